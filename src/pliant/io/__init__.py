@@ -1,0 +1,1 @@
+"""Files: one module a format; detection and dispatch in :mod:`pliant.io.registry`."""

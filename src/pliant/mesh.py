@@ -1,0 +1,362 @@
+"""PolygonMesh: points, polygons, and everything that rides along.
+
+A mesh is frozen. What a file said is kept as it was said: polygons stay polygons, vertices keep their order and
+their number, texture coordinates and normals stay with the corners of faces. Deforming a mesh is
+:meth:`PolygonMesh.with_points`: other positions, all else untouched.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from html import escape
+from pathlib import Path
+from types import MappingProxyType
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from pliant.errors import InvalidMesh
+from pliant.numerics.ragged import Ragged, frozen
+from pliant.numerics.triangulation import polygon_normals, triangulate
+
+Points = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class CornerValues:
+    """Values kept per corner of a face, shared through a pool as in Wavefront OBJ.
+
+    Parameters
+    ----------
+    values
+        (k, d) the pool.
+    indices
+        (c,) which value each corner has, in the order of ``mesh.faces.flat``; -1 where a corner has none.
+    """
+
+    values: Points
+    indices: NDArray[np.int32]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "values", frozen(self.values, np.float64))
+        object.__setattr__(self, "indices", frozen(self.indices, np.int32))
+        if self.values.ndim != 2:
+            raise InvalidMesh(f"corner values have shape {self.values.shape}; one row a value is needed")
+        if self.indices.size and not -1 <= self.indices.min() <= self.indices.max() < len(self.values):
+            raise InvalidMesh(f"corners use value {self.indices.max()}; there are {len(self.values)}")
+
+    @property
+    def per_corner(self) -> Points:
+        """(c, d) the value at each corner; NaN where there is none."""
+        padded = np.vstack([self.values, np.full((1, self.values.shape[1]), np.nan)])
+        return padded[self.indices]
+
+
+@dataclass(frozen=True, eq=False)
+class FaceLabels:
+    """A partition of the faces by name: groups, objects or materials.
+
+    Parameters
+    ----------
+    names
+        The names that occur.
+    indices
+        (f,) which name each face has; -1 where it has none.
+    """
+
+    names: tuple[str, ...]
+    indices: NDArray[np.int32]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "names", tuple(self.names))
+        object.__setattr__(self, "indices", frozen(self.indices, np.int32))
+        if self.indices.size and not -1 <= self.indices.min() <= self.indices.max() < len(self.names):
+            raise InvalidMesh(f"faces use label {self.indices.max()}; there are {len(self.names)}")
+
+    def faces(self, name: str) -> NDArray[np.int64]:
+        """The faces that carry a name."""
+        if name not in self.names:
+            raise KeyError(f"no label {name!r}; there are: {', '.join(self.names)}")
+        return np.flatnonzero(self.indices == self.names.index(name))
+
+
+@dataclass(frozen=True)
+class Material:
+    """What a material library says of one material, as far as pliant draws it.
+
+    ``color`` is a diffuse RGB triple in [0, 1]; ``texture`` the image of the diffuse colour; ``properties`` holds
+    every line of the library as it stood.
+    """
+
+    name: str
+    color: tuple[float, float, float] = (0.8, 0.8, 0.8)
+    texture: Path | None = None
+    properties: tuple[tuple[str, str], ...] = ()
+
+
+@dataclass(frozen=True, eq=False)
+class PolygonMesh:
+    """A polygon mesh: frozen, in file order, nothing merged, split or triangulated.
+
+    Parameters
+    ----------
+    points
+        (n, 3) finite float64 positions, in the mesh's own unit. Vertices that no face uses are kept.
+    faces
+        Ragged rows of vertex indices; any nested sequence or (f, k) array is accepted.
+    uvs, normals
+        Texture coordinates (k, 2 or 3) and normals (k, 3) per corner of a face.
+    groups, objects, materials
+        Names that partition the faces.
+    material_library
+        Materials by name.
+    vertex_attributes, face_attributes
+        Arrays with one row a vertex, or a face, by name; per-vertex normals are ``"normals"``, colours
+        ``"colors"``.
+    lines
+        Polylines, as rows of vertex indices.
+    source
+        Where the mesh was read from.
+    carrier
+        What its reader kept in order to write the very same file with other positions. Opaque.
+
+    Raises
+    ------
+    InvalidMesh
+        A point that is not finite, a face that uses a vertex that is not there, an attribute of another length.
+    """
+
+    points: Points
+    faces: Ragged = field(default_factory=lambda: Ragged.of([]))
+    uvs: CornerValues | None = None
+    normals: CornerValues | None = None
+    groups: FaceLabels | None = None
+    objects: FaceLabels | None = None
+    materials: FaceLabels | None = None
+    material_library: Mapping[str, Material] = field(default_factory=dict)
+    vertex_attributes: Mapping[str, NDArray[Any]] = field(default_factory=dict)
+    face_attributes: Mapping[str, NDArray[Any]] = field(default_factory=dict)
+    lines: Ragged | None = None
+    source: Path | None = None
+    carrier: Any = None
+
+    def __post_init__(self) -> None:
+        points = np.asarray(self.points, np.float64)
+        if points.size == 0:
+            points = points.reshape(0, 3)
+        if points.ndim != 2 or points.shape[1] != 3:
+            raise InvalidMesh(f"points have shape {points.shape}; (n, 3) is needed")
+        _require_finite(points)
+        self._set(points=frozen(points, np.float64), faces=Ragged.of(self.faces))
+        if self.lines is not None:
+            self._set(lines=Ragged.of(self.lines))
+        _require_vertices(self.faces, len(points), "face")
+        _require_vertices(self.lines, len(points), "line")
+        for name, labels in (("groups", self.groups), ("objects", self.objects), ("materials", self.materials)):
+            _require_length(name, labels and labels.indices, len(self.faces), "faces")
+        for name, corner in (("uvs", self.uvs), ("normals", self.normals)):
+            _require_length(name, corner and corner.indices, len(self.faces.flat), "corners")
+        for name, values in self.vertex_attributes.items():
+            _require_length(f"vertex attribute {name!r}", values, len(points), "vertices")
+        for name, values in self.face_attributes.items():
+            _require_length(f"face attribute {name!r}", values, len(self.faces), "faces")
+        self._set(
+            vertex_attributes=_frozen_mapping(self.vertex_attributes),
+            face_attributes=_frozen_mapping(self.face_attributes),
+            material_library=MappingProxyType(dict(self.material_library)),
+        )
+
+    def _set(self, **values: Any) -> None:
+        for name, value in values.items():
+            object.__setattr__(self, name, value)
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        state = {name: getattr(self, name) for name in self.__dataclass_fields__}
+        for name in ("vertex_attributes", "face_attributes", "material_library"):
+            state[name] = dict(state[name])  # a mapping proxy does not pickle
+        return _rebuild, (state,)
+
+    def with_points(self, points: ArrayLike, *, normals: Points | CornerValues | None = None) -> PolygonMesh:
+        """The same mesh with its vertices elsewhere.
+
+        Parameters
+        ----------
+        points
+            (n, 3) one position a vertex.
+        normals
+            Stored normals that follow from the points: corner values, or an (n, 3) vertex attribute.
+
+        Raises
+        ------
+        InvalidMesh
+            Another number of points, or one that is not finite.
+        """
+        new = np.asarray(points, np.float64)
+        if new.shape != self.points.shape:
+            raise InvalidMesh(f"points have shape {new.shape}; this mesh needs {self.points.shape}")
+        changes: dict[str, Any] = {"points": new}
+        if isinstance(normals, CornerValues):
+            changes["normals"] = normals
+        elif normals is not None:
+            changes["vertex_attributes"] = {**self.vertex_attributes, "normals": normals}
+        return self.replace(**changes)
+
+    def replace(self, **changes: Any) -> PolygonMesh:
+        """The same mesh with some fields exchanged."""
+        return replace(self, **changes)
+
+    @cached_property
+    def bounds(self) -> tuple[Points, Points]:
+        """The lowest and the highest corner of the bounding box, (3,) each.
+
+        Raises
+        ------
+        InvalidMesh
+            A mesh without points has none.
+        """
+        if not len(self.points):
+            raise InvalidMesh("a mesh without points has no bounds")
+        return self.points.min(axis=0), self.points.max(axis=0)
+
+    @property
+    def center(self) -> Points:
+        """(3,) the middle of the bounding box."""
+        low, high = self.bounds
+        return (low + high) / 2
+
+    @property
+    def diagonal(self) -> float:
+        """The length of the bounding box's diagonal: what "small" is measured against."""
+        low, high = self.bounds
+        return float(np.linalg.norm(high - low))
+
+    @cached_property
+    def _cut(self) -> tuple[NDArray[np.int32], NDArray[np.int32]]:
+        return triangulate(self.points, self.faces)
+
+    @cached_property
+    def triangles(self) -> NDArray[np.int32]:
+        """(t, 3) vertex indices of the triangles that the polygons are cut into for computing."""
+        return self.faces.flat[self._cut[0]]
+
+    @property
+    def triangle_corners(self) -> NDArray[np.int32]:
+        """(t, 3) the same triangles as positions in ``faces.flat``: the way to corner data."""
+        return self._cut[0]
+
+    @property
+    def triangle_faces(self) -> NDArray[np.int32]:
+        """(t,) the polygon that each triangle is a piece of."""
+        return self._cut[1]
+
+    @cached_property
+    def edges(self) -> NDArray[np.int32]:
+        """(e, 2) each edge of a polygon once, the lower vertex first, sorted."""
+        both = np.sort(self._half_edges, axis=1)
+        return np.unique(both[both[:, 0] != both[:, 1]], axis=0)
+
+    @cached_property
+    def neighbors(self) -> Ragged:
+        """(n,) for each vertex the sorted vertices that it shares an edge with."""
+        both = np.vstack([self.edges, self.edges[:, ::-1]])
+        both = both[np.lexsort((both[:, 1], both[:, 0]))]
+        counts = np.bincount(both[:, 0], minlength=len(self.points))
+        return Ragged(both[:, 1], np.concatenate([[0], np.cumsum(counts)]))
+
+    @property
+    def _half_edges(self) -> NDArray[np.int32]:
+        flat, offsets = self.faces.flat, self.faces.offsets
+        following = np.roll(flat, -1)
+        filled = self.faces.lengths > 0
+        following[offsets[1:][filled] - 1] = flat[offsets[:-1][filled]]
+        return np.stack([flat, following], axis=1)
+
+    @cached_property
+    def edge_use(self) -> tuple[int, int]:
+        """How many edges bound one face only, and how many bound three or more (or two that disagree)."""
+        half = self._half_edges[self._half_edges[:, 0] != self._half_edges[:, 1]]
+        _, inverse, count = np.unique(np.sort(half, axis=1), axis=0, return_inverse=True, return_counts=True)
+        forward = np.bincount(inverse.reshape(-1), weights=half[:, 0] < half[:, 1], minlength=len(count))
+        wrong = (count > 2) | ((count == 2) & (forward != 1))
+        return int((count == 1).sum()), int(wrong.sum())
+
+    @cached_property
+    def vertex_normals(self) -> Points:
+        """(n, 3) unit normals computed from the faces, weighted by area; zero where no face defines one."""
+        sums = np.zeros_like(self.points)
+        np.add.at(sums, self.faces.flat, polygon_normals(self.points, self.faces)[self.faces.row_of])
+        length = np.linalg.norm(sums, axis=1, keepdims=True)
+        return np.divide(sums, length, out=sums, where=length > 0)
+
+    def __repr__(self) -> str:
+        return f"PolygonMesh({len(self.points):,} points, {len(self.faces):,} faces)"
+
+    def _repr_html_(self) -> str:
+        rows = {"points": f"{len(self.points):,}", "faces": f"{len(self.faces):,}"}
+        if len(self.points):
+            low, high = self.bounds
+            rows["size"] = " × ".join(f"{extent:.4g}" for extent in high - low)
+        sides = np.unique(self.faces.lengths)
+        rows["corners a face"] = ", ".join(map(str, sides[:6])) + (" …" if len(sides) > 6 else "")
+        carried = [
+            name
+            for name in ("uvs", "normals", "groups", "objects", "materials", "lines")
+            if getattr(self, name) is not None
+        ]
+        rows["carries"] = ", ".join([*carried, *self.vertex_attributes, *self.face_attributes]) or "nothing else"
+        body = "".join(f"<tr><th>{name}</th><td>{escape(value)}</td></tr>" for name, value in rows.items())
+        return f"<table><caption>PolygonMesh</caption>{body}</table>"
+
+
+def as_points(target: PolygonMesh | ArrayLike) -> Points:
+    """(n, 3) finite, C-ordered, read-only positions of a mesh or of anything that reads as points.
+
+    Raises
+    ------
+    InvalidMesh
+        Another shape, or a coordinate that is not finite.
+    """
+    if isinstance(target, PolygonMesh):
+        return target.points
+    points = np.asarray(target, np.float64)
+    if points.shape == (0,):
+        points = points.reshape(0, 3)
+    if points.ndim != 2 or points.shape[1] != 3:
+        raise InvalidMesh(f"points have shape {points.shape}; (n, 3) is needed")
+    _require_finite(points)
+    return frozen(points, np.float64)
+
+
+def _rebuild(state: dict[str, Any]) -> PolygonMesh:
+    return PolygonMesh(**state)
+
+
+def _frozen_mapping(values: Mapping[str, NDArray[Any]]) -> Mapping[str, NDArray[Any]]:
+    return MappingProxyType({name: frozen(array, np.asarray(array).dtype) for name, array in values.items()})
+
+
+def _require_finite(points: Points) -> None:
+    with np.errstate(over="ignore", invalid="ignore"):
+        if np.isfinite(points.sum()):  # one fast pass; an overflow is looked at more closely below
+            return
+    bad = np.flatnonzero(~np.isfinite(points).all(axis=1))
+    if len(bad):
+        raise InvalidMesh(
+            f"{len(bad)} of {len(points):,} points are not finite, the first is point {bad[0]}: {points[bad[0]]}"
+        )
+
+
+def _require_vertices(rows: Ragged | None, count: int, kind: str) -> None:
+    if rows is None or not rows.flat.size or 0 <= rows.flat.min() <= rows.flat.max() < count:
+        return
+    at = int(np.flatnonzero((rows.flat < 0) | (rows.flat >= count))[0])
+    raise InvalidMesh(f"{kind} {rows.row_of[at]} uses vertex {rows.flat[at]}; there are {count} vertices")
+
+
+def _require_length(name: str, values: NDArray[Any] | None, count: int, what: str) -> None:
+    if values is not None and len(values) != count:
+        raise InvalidMesh(f"{name} has {len(values)} rows; there are {count} {what}")
+

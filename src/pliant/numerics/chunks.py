@@ -1,0 +1,39 @@
+"""One thread-pool helper drives every kernel over chunks of points."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from functools import cache
+
+CHUNK = 65_536  # points a chunk: 1.5 MB of coordinates, so that a chunk's input and output stay in cache
+
+
+def processors() -> int:
+    """How many processors this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+@cache
+def _pool() -> ThreadPoolExecutor:
+    return ThreadPoolExecutor(max_workers=processors(), thread_name_prefix="pliant")
+
+
+if hasattr(os, "register_at_fork"):
+    os.register_at_fork(after_in_child=_pool.cache_clear)  # a forked child has none of its parent's threads
+
+
+def for_chunks(work: Callable[[int, int], None], count: int, chunk: int = CHUNK) -> None:
+    """Call ``work(start, stop)`` for consecutive pieces of ``range(count)``, on all processors.
+
+    ``work`` must release the GIL to gain anything, and write to places of its own. Small counts run in the
+    calling thread.
+    """
+    if count <= chunk or processors() == 1:
+        if count:
+            work(0, count)
+        return
+    starts = range(0, count, chunk)
+    for done in [_pool().submit(work, start, min(start + chunk, count)) for start in starts]:
+        done.result()

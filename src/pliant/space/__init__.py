@@ -1,0 +1,1 @@
+"""Maps of R^3, whatever the shape is made of."""
