@@ -1,9 +1,10 @@
 from .errors import PliantError as PliantError
 from .errors import PliantWarning as PliantWarning
-from .io.registry import read as read
-from .io.registry import read_transform as read_transform
-from .io.registry import write as write
-from .io.registry import write_transform as write_transform
+from .io.meshes import read as read
+from .io.meshes import write as write
+from .io.report import LossReport as LossReport
+from .io.transforms import read_transform as read_transform
+from .io.transforms import write_transform as write_transform
 from .mesh import PolygonMesh as PolygonMesh
 from .space.bezier_ffd import BezierFFD as BezierFFD
 from .space.bspline_ffd import BSplineFFD as BSplineFFD

@@ -29,7 +29,13 @@ class UnreadableFile(PliantError):
     """
 
     def __init__(
-        self, path: Path | str, cause: str, cure: str = "", *, line: int | None = None, byte: int | None = None
+        self,
+        path: Path | str,
+        cause: str,
+        cure: str = "",
+        *,
+        line: int | None = None,
+        byte: int | None = None,
     ) -> None:
         self.path, self.cause, self.cure, self.line, self.byte = path, cause, cure, line, byte
         place = f", line {line}" if line is not None else f", byte {byte}" if byte is not None else ""

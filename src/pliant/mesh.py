@@ -155,7 +155,11 @@ class PolygonMesh:
             self._set(lines=Ragged.of(self.lines))
         _require_vertices(self.faces, len(points), "face")
         _require_vertices(self.lines, len(points), "line")
-        for name, labels in (("groups", self.groups), ("objects", self.objects), ("materials", self.materials)):
+        for name, labels in (
+            ("groups", self.groups),
+            ("objects", self.objects),
+            ("materials", self.materials),
+        ):
             _require_length(name, labels and labels.indices, len(self.faces), "faces")
         for name, corner in (("uvs", self.uvs), ("normals", self.normals)):
             _require_length(name, corner and corner.indices, len(self.faces.flat), "corners")
@@ -289,7 +293,8 @@ class PolygonMesh:
         sums = np.zeros_like(self.points)
         np.add.at(sums, self.faces.flat, polygon_normals(self.points, self.faces)[self.faces.row_of])
         length = np.linalg.norm(sums, axis=1, keepdims=True)
-        return np.divide(sums, length, out=sums, where=length > 0)
+        np.divide(sums, length, out=sums, where=length > 0)
+        return sums
 
     def __repr__(self) -> str:
         return f"PolygonMesh({len(self.points):,} points, {len(self.faces):,} faces)"
@@ -356,7 +361,6 @@ def _require_vertices(rows: Ragged | None, count: int, kind: str) -> None:
     raise InvalidMesh(f"{kind} {rows.row_of[at]} uses vertex {rows.flat[at]}; there are {count} vertices")
 
 
-def _require_length(name: str, values: NDArray[Any] | None, count: int, what: str) -> None:
-    if values is not None and len(values) != count:
+def _require_length(name: str, values: NDArray[Any], count: int, what: str) -> None:
+    if len(values) != count:
         raise InvalidMesh(f"{name} has {len(values)} rows; there are {count} {what}")
-

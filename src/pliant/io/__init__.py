@@ -1,1 +1,1 @@
-"""Files: one module a format; detection and dispatch in :mod:`pliant.io.registry`."""
+"""Files: one module a format; detection in :mod:`pliant.io.meshes` and :mod:`pliant.io.transforms`."""

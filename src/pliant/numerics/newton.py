@@ -61,7 +61,15 @@ def invert(f: Map, jacobian: Map, images: Floats, *, tolerance: float, iteration
     return x
 
 
-def _advance(f: Map, images: Floats, x: Floats, residual: Floats, error: Floats, active: NDArray[np.int64], step: Floats) -> None:
+def _advance(
+    f: Map,
+    images: Floats,
+    x: Floats,
+    residual: Floats,
+    error: Floats,
+    active: NDArray[np.int64],
+    step: Floats,
+) -> None:
     """Take the step where it lowers the residual, half of it elsewhere, and so on."""
     pending = np.arange(len(active))
     scale = 1.0

@@ -18,4 +18,6 @@ def carry_normals(jacobian: Floats, normals: Floats) -> Floats:
     """(n, 3) unit normals carried by (n, 3, 3) Jacobians; a normal that vanishes stays as it was."""
     carried = np.einsum("nij,nj->ni", cofactor(jacobian), normals)
     length = np.linalg.norm(carried, axis=1, keepdims=True)
-    return np.divide(carried, length, out=normals.copy(), where=length > 0)
+    result = normals.copy()
+    np.divide(carried, length, out=result, where=length > 0)
+    return result

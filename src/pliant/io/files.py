@@ -1,0 +1,64 @@
+"""Files read whole and written atomically."""
+
+from __future__ import annotations
+
+import os
+import tempfile
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+
+from pliant.errors import UnreadableFile
+
+
+def read_bytes(path: Path | str) -> bytes:
+    """The bytes of a file.
+
+    Raises
+    ------
+    UnreadableFile
+        It is not there, is a folder, is empty, or the system refuses it.
+    """
+    try:
+        data = Path(path).read_bytes()
+    except OSError as error:
+        raise UnreadableFile(path, error.strerror or str(error), "check the path and its permissions") from error
+    if not data:
+        raise UnreadableFile(path, "the file is empty", "write or copy it again")
+    return data
+
+
+@contextmanager
+def replacing(path: Path | str) -> Iterator[Path]:
+    """A temporary path beside the target, renamed over it on success and removed on failure.
+
+    Whoever reads the target sees the old file or the new one, never a part.
+    """
+    target = Path(path)
+    target.parent.mkdir(parents=True, exist_ok=True)
+    handle, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.stem}-", suffix=target.suffix)
+    os.close(handle)
+    temporary = Path(name)
+    try:
+        temporary.chmod(0o666 & ~_umask())
+        yield temporary
+        with temporary.open("rb") as written:
+            os.fsync(written.fileno())
+        temporary.replace(target)
+    finally:
+        temporary.unlink(missing_ok=True)
+
+
+def write_bytes(path: Path | str, parts: bytes | Iterable[bytes]) -> None:
+    """Write a file atomically from its bytes, or from pieces of them."""
+    with replacing(path) as temporary, temporary.open("wb") as stream:
+        if isinstance(parts, bytes):
+            stream.write(parts)
+        else:
+            stream.writelines(parts)
+
+
+def _umask() -> int:
+    mask = os.umask(0)
+    os.umask(mask)
+    return mask
