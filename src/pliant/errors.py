@@ -61,6 +61,10 @@ class InvalidMesh(PliantError):
     """Points, faces or attributes that contradict each other."""
 
 
+class InvalidOption(PliantError):
+    """An argument that is none of the choices, or that contradicts another."""
+
+
 class InvalidTarget(PliantError):
     """A target that this deformer cannot bind to."""
 
@@ -71,6 +75,10 @@ class InvalidControls(PliantError):
 
 class InvalidDeformer(PliantError):
     """A deformer whose structure is degenerate: a flat lattice, a zero axis, a repeated site."""
+
+
+class InvalidParameter(PliantError):
+    """An argument outside what it may be: an empty box, a spacing of zero, an unknown name."""
 
 
 class OutsideDomain(PliantError):
@@ -98,6 +106,10 @@ class MissingExtra(PliantError):
 
     def __reduce__(self) -> tuple[object, ...]:
         return MissingExtra, (self.purpose, self.extra)
+
+
+class NoGraphics(PliantError):
+    """A machine on which nothing can draw: no display and no off-screen driver."""
 
 
 class PliantWarning(UserWarning):

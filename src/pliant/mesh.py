@@ -361,6 +361,6 @@ def _require_vertices(rows: Ragged | None, count: int, kind: str) -> None:
     raise InvalidMesh(f"{kind} {rows.row_of[at]} uses vertex {rows.flat[at]}; there are {count} vertices")
 
 
-def _require_length(name: str, values: NDArray[Any], count: int, what: str) -> None:
-    if len(values) != count:
+def _require_length(name: str, values: NDArray[Any] | None, count: int, what: str) -> None:
+    if values is not None and len(values) != count:
         raise InvalidMesh(f"{name} has {len(values)} rows; there are {count} {what}")
