@@ -49,7 +49,7 @@ def replacing(path: Path | str) -> Iterator[Path]:
         temporary.unlink(missing_ok=True)
 
 
-def write_bytes(path: Path | str, parts: bytes | Iterable[bytes]) -> None:
+def write_bytes(path: Path | str, parts: bytes | Iterable[bytes | memoryview]) -> None:
     """Write a file atomically from its bytes, or from pieces of them."""
     with replacing(path) as temporary, temporary.open("wb") as stream:
         if isinstance(parts, bytes):
