@@ -195,7 +195,7 @@ class Drag:
         view.flags.writeable = False
         return view
 
-    def update(self, controls: ArrayLike, changed: Any = None) -> NDArray[np.int64]:
+    def update(self, controls: ArrayLike, changed: Any = None) -> NDArray[np.integer]:
         """Move the controls.
 
         Parameters

@@ -61,10 +61,6 @@ class InvalidMesh(PliantError):
     """Points, faces or attributes that contradict each other."""
 
 
-class InvalidOption(PliantError):
-    """An argument that is none of the choices, or that contradicts another."""
-
-
 class InvalidTarget(PliantError):
     """A target that this deformer cannot bind to."""
 

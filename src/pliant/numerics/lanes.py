@@ -1,0 +1,220 @@
+"""Eight doubles at a time: a vector type for numba kernels.
+
+Numba leaves straight-line code over a few values scalar. ``Lanes`` is an LLVM vector of eight doubles that kernels
+add and multiply like numbers; a float operand is spread over all lanes, and a product that is added becomes one
+fused multiply-add. Where the processor has AVX-512 a value is one register, elsewhere LLVM splits it.
+"""
+
+from __future__ import annotations
+
+import operator
+from typing import Any
+
+from llvmlite import ir
+from numba import types
+from numba.core import cgutils
+from numba.core.typing.templates import AbstractTemplate, infer_global, signature
+from numba.extending import intrinsic, lower_builtin, models, register_model
+
+WIDTH = 8
+_VECTOR = ir.VectorType(ir.DoubleType(), WIDTH)
+_UNDEFINED = ir.Constant(_VECTOR, ir.Undefined)
+_FUSED = ("contract", "reassoc")
+
+
+class Lanes(types.Type):  # type: ignore[misc]  # numba is untyped
+    """The numba type of eight doubles."""
+
+    def __init__(self) -> None:
+        super().__init__(name="Lanes")
+
+
+lanes = Lanes()
+
+
+@register_model(Lanes)
+class _Model(models.PrimitiveModel):  # type: ignore[misc]
+    def __init__(self, manager: Any, numba_type: Any) -> None:
+        super().__init__(manager, numba_type, _VECTOR)
+
+
+class _Arithmetic(AbstractTemplate):  # type: ignore[misc]
+    """Lanes with lanes, or with a float, give lanes."""
+
+    def generic(self, args: Any, _keywords: Any) -> Any:
+        if len(args) == 2 and lanes in args and all(a is lanes or a == types.float64 for a in args):
+            return signature(lanes, *args)
+        return None
+
+
+def _spread(builder: Any, value: Any) -> Any:
+    if value.type == _VECTOR:
+        return value
+    one = builder.insert_element(_UNDEFINED, value, ir.Constant(ir.IntType(32), 0))
+    return builder.shuffle_vector(one, _UNDEFINED, ir.Constant(ir.VectorType(ir.IntType(32), WIDTH), None))
+
+
+def _define(symbol: Any, instruction: str) -> None:
+    infer_global(symbol)(type(f"_{instruction}", (_Arithmetic,), {}))
+
+    def lower(_context: Any, builder: Any, _signature: Any, args: Any) -> Any:
+        left, right = (_spread(builder, arg) for arg in args)
+        return getattr(builder, instruction)(left, right, flags=_FUSED)
+
+    for operands in ((lanes, lanes), (lanes, types.float64), (types.float64, lanes)):
+        lower_builtin(symbol, *operands)(lower)
+
+
+_define(operator.add, "fadd")
+_define(operator.sub, "fsub")
+_define(operator.mul, "fmul")
+
+
+@intrinsic
+def spread(_typing: Any, value: Any) -> Any:
+    """The same float in all lanes."""
+
+    def generate(_context: Any, builder: Any, _signature: Any, args: Any) -> Any:
+        return _spread(builder, args[0])
+
+    return lanes(types.float64), generate
+
+
+@intrinsic
+def load(_typing: Any, array: Any, index: Any) -> Any:
+    """Eight consecutive elements of a C-ordered 1-D float64 array; the caller guarantees that they exist."""
+
+    def generate(context: Any, builder: Any, _signature: Any, args: Any) -> Any:
+        return builder.load(_address(context, builder, array, *args), align=8)
+
+    return lanes(array, types.intp), generate
+
+
+@intrinsic
+def store(_typing: Any, array: Any, index: Any, value: Any) -> Any:
+    """Write eight consecutive elements of a C-ordered 1-D float64 array."""
+
+    def generate(context: Any, builder: Any, _signature: Any, args: Any) -> Any:
+        builder.store(args[2], _address(context, builder, array, *args[:2]), align=8)
+        return context.get_dummy_value()
+
+    return types.void(array, types.intp, lanes), generate
+
+
+@intrinsic
+def load_triples(_typing: Any, array: Any, index: Any) -> Any:
+    """Eight consecutive (x, y, z) triples as the tuple of their x, y and z."""
+
+    def generate(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+        start = _address(context, builder, array, *args)
+        parts = [builder.load(builder.gep(start, [ir.Constant(ir.IntType(64), i)]), align=8) for i in range(3)]
+        columns = [_gather(builder, parts, [3 * n + axis for n in range(WIDTH)]) for axis in range(3)]
+        return context.make_tuple(builder, sig.return_type, columns)
+
+    return types.UniTuple(lanes, 3)(array, types.intp), generate
+
+
+@intrinsic
+def store_triples(_typing: Any, array: Any, index: Any, x: Any, y: Any, z: Any) -> Any:
+    """Write eight consecutive (x, y, z) triples from their x, y and z."""
+
+    def generate(context: Any, builder: Any, _signature: Any, args: Any) -> Any:
+        start = _address(context, builder, array, *args[:2])
+        for part in range(3):
+            places = range(WIDTH * part, WIDTH * (part + 1))
+            row = _gather(builder, args[2:], [WIDTH * (place % 3) + place // 3 for place in places])
+            builder.store(row, builder.gep(start, [ir.Constant(ir.IntType(64), part)]), align=8)
+        return context.get_dummy_value()
+
+    return types.void(array, types.intp, lanes, lanes, lanes), generate
+
+
+@intrinsic
+def clamp(_typing: Any, value: Any, low: Any, high: Any) -> Any:
+    """The value of each lane, or the bound that it passes."""
+
+    def generate(_context: Any, builder: Any, _signature: Any, args: Any) -> Any:
+        low, high = _spread(builder, args[1]), _spread(builder, args[2])
+        raised = builder.select(builder.fcmp_ordered(">", args[0], low), args[0], low)
+        return builder.select(builder.fcmp_ordered("<", raised, high), raised, high)
+
+    return lanes(lanes, types.float64, types.float64), generate
+
+
+@intrinsic
+def where_between(_typing: Any, value: Any, low: Any, high: Any, inside: Any, outside: Any) -> Any:
+    """``inside`` in the lanes where low <= value <= high, ``outside`` in the others."""
+
+    def generate(_context: Any, builder: Any, _signature: Any, args: Any) -> Any:
+        low, high, outside = (_spread(builder, args[i]) for i in (1, 2, 4))
+        above = builder.fcmp_ordered(">=", args[0], low)
+        below = builder.fcmp_ordered("<=", args[0], high)
+        return builder.select(builder.and_(above, below), args[3], outside)
+
+    return lanes(lanes, types.float64, types.float64, lanes, types.float64), generate
+
+
+@intrinsic
+def whole(_typing: Any, value: Any) -> Any:
+    """The largest whole number not above each lane."""
+
+    def generate(_context: Any, builder: Any, _signature: Any, args: Any) -> Any:
+        floor_type = ir.FunctionType(_VECTOR, [_VECTOR])
+        return builder.call(cgutils.get_or_insert_function(builder.module, floor_type, "llvm.floor.v8f64"), args)
+
+    return lanes(lanes), generate
+
+
+@intrinsic
+def get(_typing: Any, array: Any, index: Any) -> Any:
+    """One element of a C-ordered 1-D array, without Python's negative indices: they cost a branch a load."""
+
+    def generate(context: Any, builder: Any, _signature: Any, args: Any) -> Any:
+        data = context.make_array(array)(context, builder, value=args[0]).data
+        return builder.load(cgutils.gep(builder, data, args[1]))
+
+    return array.dtype(array, types.intp), generate
+
+
+@intrinsic
+def put(_typing: Any, array: Any, index: Any, value: Any) -> Any:
+    """Write one element of a C-ordered 1-D float64 array."""
+
+    def generate(context: Any, builder: Any, _signature: Any, args: Any) -> Any:
+        data = context.make_array(array)(context, builder, value=args[0]).data
+        builder.store(args[2], cgutils.gep(builder, data, args[1]))
+        return context.get_dummy_value()
+
+    return types.void(array, types.intp, types.float64), generate
+
+
+@intrinsic
+def total(_typing: Any, value: Any) -> Any:
+    """The sum over the lanes, halves first."""
+
+    def generate(_context: Any, builder: Any, _signature: Any, args: Any) -> Any:
+        vector, width = args[0], WIDTH
+        while width > 1:
+            width //= 2
+            picks = [list(range(width)), list(range(width, 2 * width))]
+            undefined = ir.Constant(vector.type, ir.Undefined)
+            mask = ir.VectorType(ir.IntType(32), width)
+            low, high = (builder.shuffle_vector(vector, undefined, ir.Constant(mask, pick)) for pick in picks)
+            vector = builder.fadd(low, high, flags=_FUSED)
+        return builder.extract_element(vector, ir.Constant(ir.IntType(32), 0))
+
+    return types.float64(lanes), generate
+
+
+def _address(context: Any, builder: Any, array_type: Any, array: Any, index: Any) -> Any:
+    data = context.make_array(array_type)(context, builder, value=array).data
+    return builder.bitcast(cgutils.gep(builder, data, index), _VECTOR.as_pointer())
+
+
+def _gather(builder: Any, parts: Any, picks: list[int]) -> Any:
+    """Eight picked lanes of three vectors laid end to end."""
+    integers = ir.VectorType(ir.IntType(32), WIDTH)
+    near = [pick if pick < 2 * WIDTH else 0 for pick in picks]
+    far = [WIDTH + pick - 2 * WIDTH if pick >= 2 * WIDTH else place for place, pick in enumerate(picks)]
+    first = builder.shuffle_vector(parts[0], parts[1], ir.Constant(integers, near))
+    return builder.shuffle_vector(first, parts[2], ir.Constant(integers, far))

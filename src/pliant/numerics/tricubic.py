@@ -1,0 +1,283 @@
+"""Kernels for tricubic tensor products on a grid of cells: what B-spline and Bézier lattices share.
+
+Points are sorted by cell within chunks that fit the cache. Inside a cell the 64 control points are the same for all
+points, so that eight points go through the arithmetic at once (see :mod:`pliant.numerics.lanes`), and scattering the
+results stays within the chunk.
+
+Arguments that the kernels share:
+
+``first, starts``
+    Place of the chunk's first point; (cells + 2,) where each cell's run begins in the chunk. The last run holds the
+    points that no cell owns.
+``order, rank, local``
+    (n,) which point stands at each sorted place; (n,) the inverse, counted from the chunk's first; (3 * (n + 8),)
+    the sorted points' coordinates in their cells, one axis after another.
+``grid, stride, basis``
+    (3,) numbers of cells; control points from one cell to the next (1 for B-splines, 3 for Bézier patches);
+    (4, 4) coefficient of power p in basis function b at [p, b].
+``lattice, shape``
+    Control values, flat, of shape (x, y, z, 3), and (x, y, z).
+"""
+
+from __future__ import annotations
+
+import numba
+import numpy as np
+
+from pliant.numerics.lanes import clamp, get, load, load_triples, put, store, store_triples, total, where_between, whole
+
+kernel = numba.njit(nogil=True, cache=True, fastmath={"contract", "reassoc"})
+inlined = numba.njit(nogil=True, fastmath={"contract", "reassoc"}, forceinline=True)
+
+
+@inlined
+def _coordinate(frame, axis, x, y, z):
+    return x * frame[axis, 0] + y * frame[axis, 1] + z * frame[axis, 2] + frame[axis, 3]
+
+
+@inlined
+def _place(frame, limits, grid, axis, x, y, z):
+    """Along one axis: the coordinate in the cell, and the cell."""
+    value = clamp(_coordinate(frame, axis, x, y, z), limits[0, axis], limits[1, axis])
+    column = clamp(whole(value), 0.0, grid[axis] - 1.0)
+    return value - column, column
+
+
+@kernel
+def locate(points, first, stop, frame, limits, keep, grid, order, rank, local, starts):
+    """Sort one chunk of points by cell: a stable counting sort.
+
+    ``frame`` (3, 4) maps positions to grid coordinates; they are clamped to ``limits`` (2, 3), and a point beyond
+    ``keep`` (2, 3) belongs to no cell.
+    """
+    cells = grid[0] * grid[1] * grid[2]
+    length, count = len(local) // 3, stop - first
+    cell_of = np.empty(count + 8)
+    q = np.empty(3 * (count + 8))
+    starts[:] = 0
+    tail = np.zeros(24)  # the last eight points may be fewer: they are read from a copy
+    for n in range(3 * (count // 8 * 8), 3 * count):
+        put(tail, n - 3 * (count // 8 * 8), get(points, 3 * first + n))
+    for n in range(0, count, 8):
+        x, y, z = load_triples(points, 3 * (first + n)) if n + 8 <= count else load_triples(tail, 0)
+        u, i = _place(frame, limits, grid, 0, x, y, z)
+        v, j = _place(frame, limits, grid, 1, x, y, z)
+        w, k = _place(frame, limits, grid, 2, x, y, z)
+        cell = (i * float(grid[1]) + j) * float(grid[2]) + k
+        for axis in range(3):
+            value = _coordinate(frame, axis, x, y, z)
+            cell = where_between(value, keep[0, axis], keep[1, axis], cell, float(cells))
+        store(cell_of, n, cell)
+        store_triples(q, 3 * n, u, v, w)
+    for n in range(count):
+        starts[int(get(cell_of, n)) + 1] += 1
+    for cell in range(cells + 1):
+        starts[cell + 1] += starts[cell]
+    place = starts.copy()
+    for n in range(count):
+        cell = int(get(cell_of, n))
+        at = place[cell]
+        place[cell] = at + 1
+        rank[first + n] = at
+        order[first + at] = first + n
+    for at in range(first, stop):  # gathered, so that what is written to memory is written in sequence
+        n = 3 * (get(order, at) - first)
+        put(local, at, get(q, n))
+        put(local, length + at, get(q, n + 1))
+        put(local, 2 * length + at, get(q, n + 2))
+
+
+@inlined
+def _horner(basis, b, t):
+    return ((t * basis[3, b] + basis[2, b]) * t + basis[1, b]) * t + basis[0, b]
+
+
+@inlined
+def _slope(basis, b, t):
+    return (t * (3.0 * basis[3, b]) + 2.0 * basis[2, b]) * t + basis[1, b]
+
+
+@inlined
+def _corner(cell, grid, stride, shape):
+    """Where a cell's first control value stands in the flat lattice."""
+    z, rest = cell % grid[2], cell // grid[2]
+    y, x = rest % grid[1], rest // grid[1]
+    return stride * ((x * shape[1] + y) * shape[2] + z) * 3
+
+
+@inlined
+def _along_z(lattice, at, z):
+    return (
+        z[0] * get(lattice, at)
+        + z[1] * get(lattice, at + 3)
+        + z[2] * get(lattice, at + 6)
+        + z[3] * get(lattice, at + 9)
+    )
+
+
+@inlined
+def _plane(lattice, at, down_y, y, z):
+    return (
+        y[0] * _along_z(lattice, at, z)
+        + y[1] * _along_z(lattice, at + down_y, z)
+        + y[2] * _along_z(lattice, at + 2 * down_y, z)
+        + y[3] * _along_z(lattice, at + 3 * down_y, z)
+    )
+
+
+@inlined
+def _cube(lattice, at, down_x, down_y, x, y, z):
+    """The sum over 4 x 4 x 4 control values: along z, then y, then x, 84 multiply-adds."""
+    return (
+        x[0] * _plane(lattice, at, down_y, y, z)
+        + x[1] * _plane(lattice, at + down_x, down_y, y, z)
+        + x[2] * _plane(lattice, at + 2 * down_x, down_y, y, z)
+        + x[3] * _plane(lattice, at + 3 * down_x, down_y, y, z)
+    )
+
+
+@inlined
+def _values(basis, t):
+    return _horner(basis, 0, t), _horner(basis, 1, t), _horner(basis, 2, t), _horner(basis, 3, t)
+
+
+@inlined
+def _slopes(basis, t):
+    return _slope(basis, 0, t), _slope(basis, 1, t), _slope(basis, 2, t), _slope(basis, 3, t)
+
+
+@kernel
+def evaluate(first, starts, order, rank, local, grid, stride, basis, lattice, shape, chosen, base, out):
+    """out = base + the tensor product, at one chunk's points in the chosen cells.
+
+    Where all cells are chosen, points that belong to none get their base.
+    """
+    length, cells = len(local) // 3, len(starts) - 2
+    moved = np.empty(3 * (starts[cells + 1] + 8))
+    down_x, down_y = shape[1] * shape[2] * 3, shape[2] * 3
+    for cell in chosen:
+        corner = _corner(cell, grid, stride, shape)
+        for at in range(first + starts[cell], first + starts[cell + 1], 8):
+            x = _values(basis, load(local, at))
+            y = _values(basis, load(local, length + at))
+            z = _values(basis, load(local, 2 * length + at))
+            store_triples(
+                moved,
+                3 * (at - first),
+                _cube(lattice, corner, down_x, down_y, x, y, z),
+                _cube(lattice, corner + 1, down_x, down_y, x, y, z),
+                _cube(lattice, corner + 2, down_x, down_y, x, y, z),
+            )
+    if len(chosen) < cells:
+        for cell in chosen:
+            for at in range(starts[cell], starts[cell + 1]):
+                n = 3 * get(order, first + at)
+                for c in range(3):
+                    put(out, n + c, get(base, n + c) + get(moved, 3 * at + c))
+        return
+    for n in range(first, first + starts[cells + 1]):  # in the points' own order: memory is passed in sequence
+        at = get(rank, n)
+        for c in range(3):
+            shift = get(moved, 3 * at + c) if at < starts[cells] else 0.0
+            put(out, 3 * n + c, get(base, 3 * n + c) + shift)
+
+
+@kernel
+def differentiate(first, starts, order, local, frame, grid, stride, basis, lattice, shape, linear, out):
+    """out (n, 3, 3), flat = ``linear`` (3, 3) + the derivative of the tensor product with respect to position."""
+    length, cells = len(local) // 3, len(starts) - 2
+    scratch = np.empty(72)
+    down_x, down_y = shape[1] * shape[2] * 3, shape[2] * 3
+    for cell in range(cells):
+        corner, stop = _corner(cell, grid, stride, shape), first + starts[cell + 1]
+        for at in range(first + starts[cell], stop, 8):
+            u, v, w = load(local, at), load(local, length + at), load(local, 2 * length + at)
+            x, y, z = _values(basis, u), _values(basis, v), _values(basis, w)
+            dx, dy, dz = _slopes(basis, u), _slopes(basis, v), _slopes(basis, w)
+            for c in range(3):
+                along_x = _cube(lattice, corner + c, down_x, down_y, dx, y, z)
+                along_y = _cube(lattice, corner + c, down_x, down_y, x, dy, z)
+                along_z = _cube(lattice, corner + c, down_x, down_y, x, y, dz)
+                for a in range(3):
+                    slope = along_x * frame[0, a] + along_y * frame[1, a] + along_z * frame[2, a]
+                    store(scratch, 8 * (3 * c + a), slope + linear[c, a])
+            for i in range(min(8, stop - at)):
+                n = 9 * get(order, at + i)
+                for entry in range(9):
+                    put(out, n + entry, get(scratch, 8 * entry + i))
+    for at in range(first + starts[cells], first + starts[cells + 1]):
+        for entry in range(9):
+            put(out, 9 * get(order, at) + entry, linear[entry // 3, entry % 3])
+
+
+@kernel
+def gather(first, starts, order, local, grid, stride, basis, shape, values, lattice):
+    """Add the transpose of :func:`evaluate` to a lattice: each point's value, spread over its 64 control values."""
+    length = len(local) // 3
+    sums = np.empty(192 * 8)
+    across = np.empty(64)
+    here = np.empty(24)
+    for cell in range(len(starts) - 2):
+        if starts[cell] == starts[cell + 1]:
+            continue
+        stop = first + starts[cell + 1]
+        sums[:] = 0.0
+        for at in range(first + starts[cell], stop, 8):
+            here[:] = 0.0
+            for i in range(min(8, stop - at)):
+                for c in range(3):
+                    put(here, 3 * i + c, get(values, 3 * get(order, at + i) + c))
+            value = load_triples(here, 0)
+            x = _values(basis, load(local, at))
+            y = _values(basis, load(local, length + at))
+            z = _values(basis, load(local, 2 * length + at))
+            for b in range(4):
+                store(across, 8 * b, x[b])
+                store(across, 32 + 8 * b, y[b])
+            for ij in range(16):
+                share = load(across, 8 * (ij // 4)) * load(across, 32 + 8 * (ij % 4))
+                for k in range(4):
+                    for c in range(3):
+                        at_sum = 8 * (12 * ij + 3 * k + c)
+                        store(sums, at_sum, load(sums, at_sum) + share * z[k] * value[c])
+        corner = _corner(cell, grid, stride, shape)
+        for ij in range(16):
+            row = corner + ((ij // 4) * shape[1] + ij % 4) * shape[2] * 3
+            for entry in range(12):
+                lattice[row + entry] += total(load(sums, 8 * (12 * ij + entry)))
+
+
+@kernel
+def column(first, starts, order, local, grid, along_x, along_y, along_z, chosen, at, points, weights):
+    """The weights that one control value has at the points of the chosen cells, written from place ``at`` on.
+
+    ``along_x`` (cells + 1, 4) and so on: the coefficients, lowest power first, of the control's basis function in
+    each cell of that axis.
+    """
+    length = len(local) // 3
+    piece = np.empty(8)
+    for cell in chosen:
+        k, rest = cell % grid[2], cell // grid[2]
+        i, j = rest // grid[1], rest % grid[1]
+        stop = first + starts[cell + 1]
+        for place in range(first + starts[cell], stop, 8):
+            u, v, w = load(local, place), load(local, length + place), load(local, 2 * length + place)
+            weight = (
+                (((u * along_x[i, 3] + along_x[i, 2]) * u + along_x[i, 1]) * u + along_x[i, 0])
+                * (((v * along_y[j, 3] + along_y[j, 2]) * v + along_y[j, 1]) * v + along_y[j, 0])
+                * (((w * along_z[k, 3] + along_z[k, 2]) * w + along_z[k, 1]) * w + along_z[k, 0])
+            )
+            store(piece, 0, weight)
+            for lane in range(min(8, stop - place)):
+                points[at] = order[place + lane]
+                weights[at] = piece[lane]
+                at += 1
+
+
+@kernel
+def shift(first, stop, points, weights, anchors, step, out):
+    """out[points] = anchors + weights * step, for one piece of a column."""
+    for at in range(first, stop):
+        n, weight = 3 * get(points, at), get(weights, at)
+        for c in range(3):
+            put(out, n + c, get(anchors, 3 * at + c) + weight * step[c])

@@ -1,0 +1,230 @@
+"""Free-form deformation by a lattice of uniform cubic B-splines.
+
+T(x) = A x + t + sum_ijk B_i(u) B_j(v) B_k(w) phi_ijk, the tensor product of Lee, Wolberg & Shin (1997), eq. 1, and
+Rueckert et al. (1999), eq. 2. A control point reaches only the 4 x 4 x 4 cells around it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any, Literal, Self
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from pliant.deformer import Controls, SpaceDeformer, Target, checked_controls
+from pliant.errors import InvalidDeformer
+from pliant.mesh import PolygonMesh, as_points
+from pliant.numerics.cells import BSPLINE, CellGrid, CellPoints
+from pliant.numerics.ragged import frozen
+from pliant.space.box import box_around, checked_axes, thickened
+from pliant.space.lattice import LatticeBinding, Padding
+
+Floats = NDArray[np.float64]
+Edge = Literal["clamp", "zero"]
+Direction = Literal["push-forward", "pull-back"]
+
+_LAYERS = {"clamp": 2, "zero": 3}  # values beyond the lattice that the support of its last control points reaches
+
+
+@dataclass(frozen=True, eq=False, kw_only=True)
+class BSplineFFD(SpaceDeformer):
+    """Free-form deformation by a uniform cubic B-spline lattice.
+
+    Parameters
+    ----------
+    displacements
+        (nx, ny, nz, 3) displacement of each control point, along the world's axes, in the mesh's unit. An axis with
+        one control point is constant: (nx, ny, 1) is a planar lattice, a map of the plane into space.
+    origin
+        (3,) where control point (0, 0, 0) rests.
+    spacing
+        (3,) distance of the control points along each lattice axis.
+    axes
+        (3, 3) orthonormal; the columns are the lattice's axes.
+    affine
+        (4, 4) the global part, applied to positions before the displacement is added.
+    edge
+        What stands beyond the last control points: ``"clamp"`` their own displacement (translations are
+        reproduced everywhere), ``"zero"`` none.
+    direction
+        What the map is used for: ``"push-forward"`` moves points, ``"pull-back"`` says where a target's points come
+        from, as registration files do. Calling it applies the map to points, either way.
+    carrier
+        What a reader kept in order to write the same file. Opaque.
+
+    Raises
+    ------
+    InvalidDeformer
+        Spacing that is not positive, axes that are not orthonormal, a singular affine part, values that are not
+        finite.
+    """
+
+    displacements: Controls
+    origin: Floats
+    spacing: Floats
+    axes: Floats = field(default_factory=lambda: np.eye(3))
+    affine: Floats = field(default_factory=lambda: np.eye(4))
+    edge: Edge = "clamp"
+    direction: Direction = "push-forward"
+    carrier: Any = None
+
+    def __post_init__(self) -> None:
+        values = {
+            "displacements": _lattice_values(self.displacements),
+            "origin": _vector(self.origin, "origin"),
+            "spacing": _vector(self.spacing, "spacing"),
+            "axes": checked_axes(self.axes),
+            "affine": _affine(self.affine),
+        }
+        if not (values["spacing"] > 0).all():
+            raise InvalidDeformer(f"lattice spacing must be positive; it is {values['spacing'].tolist()}")
+        if self.edge not in _LAYERS:
+            raise InvalidDeformer(f"edge is {self.edge!r}; it must be 'clamp' or 'zero'")
+        for name, value in values.items():
+            object.__setattr__(self, name, frozen(value, np.float64))
+
+    @classmethod
+    def around(
+        cls,
+        target: PolygonMesh | ArrayLike,
+        shape: tuple[int, int, int] = (4, 4, 4),
+        margin: float = 0.0,
+        axes: ArrayLike | None = None,
+        edge: Edge = "clamp",
+    ) -> BSplineFFD:
+        """A lattice at rest that wraps a shape: the control points span its bounding box.
+
+        Parameters
+        ----------
+        target
+            A mesh or (n, 3) points.
+        shape
+            Numbers of control points along each axis; n points make n - 1 spans.
+        margin
+            How much to grow the box on every side, as a fraction of its extent along each axis.
+        axes
+            (3, 3) orthonormal columns, for a lattice that stands askew.
+        edge
+            What stands beyond the last control points.
+        """
+        frame = checked_axes(axes)
+        counts = np.array(shape)
+        if counts.shape != (3,) or (counts < 1).any():
+            raise InvalidDeformer(f"a lattice needs at least one control point an axis; its shape is {shape}")
+        origin, extent = box_around(target, frame, margin)
+        thick = thickened(extent)
+        middle = np.where((counts == 1) | (extent < thick), extent / 2 - thick * (counts > 1) / 2, 0.0)
+        spacing = thick / np.maximum(counts - 1, 1)
+        return cls(
+            displacements=np.zeros((*shape, 3)), origin=origin + frame @ middle, spacing=spacing, axes=frame, edge=edge
+        )
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """Numbers of control points along each axis."""
+        x, y, z = self.displacements.shape[:3]
+        return x, y, z
+
+    @cached_property
+    def rest(self) -> Controls:
+        """(nx, ny, nz, 3) positions of the control points at rest."""
+        index = np.stack(np.meshgrid(*(np.arange(n) for n in self.shape), indexing="ij"), axis=-1)
+        return frozen(self.origin + (index * self.spacing) @ self.axes.T, np.float64)
+
+    @property
+    def controls(self) -> Controls:
+        return self.rest + self.displacements
+
+    def moved(self, controls: ArrayLike) -> Self:
+        return replace(self, displacements=checked_controls(controls, self.rest.shape) - self.rest)
+
+    def bind(self, target: Target) -> LatticeBinding:
+        points = as_points(target)
+        base = points
+        if not np.array_equal(self.affine, np.eye(4)):
+            base = frozen(points @ self.affine[:3, :3].T + self.affine[:3, 3], np.float64)
+        sampled = CellPoints(self._grid, points)
+        return LatticeBinding(sampled, self._padding, self.rest, self.displacements, base)
+
+    def jacobian(self, points: ArrayLike) -> Floats:
+        sampled = CellPoints(self._grid, as_points(points))
+        return sampled.jacobian(self._padding.values(self.displacements), np.ascontiguousarray(self.affine[:3, :3]))
+
+    def refined(self) -> BSplineFFD:
+        """The same map on half the spacing, exactly, by knot insertion (Lane & Riesenfeld 1980).
+
+        Axes with one control point stay as they are. Where the edge policy needs it, the finer lattice has one
+        layer ("clamp") or two ("zero") beyond the old ends.
+        """
+        origin, spacing, values = self.origin.copy(), self.spacing.copy(), self.displacements
+        for axis in range(3):
+            if self.shape[axis] > 1:
+                values, layers = _refine(values, axis, self.edge)
+                spacing[axis] /= 2
+                origin -= layers * spacing[axis] * self.axes[:, axis]
+        return replace(self, displacements=values, origin=origin, spacing=spacing, carrier=None)
+
+    @cached_property
+    def _layers(self) -> NDArray[np.int64]:
+        """(3,) values beyond the lattice on each side; an axis with one control point is always constant."""
+        return np.where(np.array(self.shape) == 1, _LAYERS["clamp"], _LAYERS[self.edge])
+
+    @cached_property
+    def _grid(self) -> CellGrid:
+        counts = np.array(self.shape) + 2 * self._layers - 3
+        frame = np.empty((3, 4))
+        frame[:, :3] = self.axes.T / self.spacing[:, None]
+        frame[:, 3] = self._layers - 1 - frame[:, :3] @ self.origin
+        limits = np.stack([np.zeros(3), counts.astype(np.float64)])
+        everywhere = np.array([[-np.inf] * 3, [np.inf] * 3])
+        return CellGrid(frame, counts, 1, BSPLINE, limits, everywhere)
+
+    @cached_property
+    def _padding(self) -> Padding:
+        sources = []
+        for count, layers in zip(self.shape, self._layers, strict=True):
+            source = np.arange(-layers, count + layers)
+            beyond = (source < 0) | (source >= count)
+            constant = self.edge == "clamp" or count == 1
+            sources.append(np.clip(source, 0, count - 1) if constant else np.where(beyond, -1, source))
+        return Padding(self.shape, tuple(sources))
+
+
+def _refine(values: Floats, axis: int, edge: Edge) -> tuple[Floats, int]:
+    """Control values along one axis on half the spacing, and how many layers stand before the old first one."""
+    moved = np.moveaxis(values, axis, 0)
+    width = [(2, 2)] + [(0, 0)] * (moved.ndim - 1)
+    padded = np.pad(moved, width, mode="edge" if edge == "clamp" else "constant")
+    knots = (padded[:-2] + 6 * padded[1:-1] + padded[2:]) / 8  # at the old control points -1 ... n
+    middles = (padded[:-1] + padded[1:]) / 2  # between -2 and -1 ... n and n + 1
+    fine = np.empty((2 * len(knots) - 1, *moved.shape[1:]))
+    fine[0::2], fine[1::2] = knots, middles[1:-1]  # fine control points -2 ... 2 n
+    layers = 1 if edge == "clamp" else 2
+    return np.moveaxis(fine[2 - layers : len(fine) - 2 + layers], 0, axis), layers
+
+
+def _lattice_values(values: ArrayLike) -> Floats:
+    array = np.asarray(values, np.float64)
+    if array.ndim != 4 or array.shape[3] != 3 or 0 in array.shape:
+        raise InvalidDeformer(f"lattice displacements have shape {array.shape}; (nx, ny, nz, 3) is needed")
+    if not np.isfinite(array).all():
+        raise InvalidDeformer(f"{(~np.isfinite(array)).any(axis=-1).sum()} control points are not finite")
+    return array
+
+
+def _vector(values: ArrayLike, name: str) -> Floats:
+    array = np.asarray(values, np.float64)
+    if array.shape != (3,) or not np.isfinite(array).all():
+        raise InvalidDeformer(f"lattice {name} must be three finite numbers; it is {array.tolist()}")
+    return array
+
+
+def _affine(matrix: ArrayLike) -> Floats:
+    array = np.array(matrix, np.float64)
+    if array.shape != (4, 4) or not np.isfinite(array).all() or not np.array_equal(array[3], [0, 0, 0, 1]):
+        raise InvalidDeformer("the affine part must be a finite (4, 4) matrix with last row 0 0 0 1")
+    if np.linalg.matrix_rank(array[:3, :3]) < 3:
+        raise InvalidDeformer("the affine part is singular: it flattens space")
+    return array

@@ -1,0 +1,233 @@
+"""What all lattices of control points share: a linear binding, and a drag that touches only what it must."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any, Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+from scipy.sparse import csr_array
+from scipy.sparse.linalg import LinearOperator
+
+from pliant.deformer import Controls, Drag, LinearBinding, checked_controls, checked_out
+from pliant.errors import InvalidControls
+from pliant.mesh import Points
+
+Floats = NDArray[np.float64]
+Shares = tuple[Floats, Floats, Floats]
+
+
+class SampledBasis(Protocol):
+    """A tensor-product basis at the target's points: see :class:`pliant.numerics.cells.CellPoints`."""
+
+    points: Points
+
+    def evaluate(self, lattice: Floats, base: Floats, out: Floats) -> None: ...
+    def jacobian(self, lattice: Floats, linear: Floats) -> Floats: ...
+    def transpose(self, values: Floats) -> Floats: ...
+    def column(self, selected: Shares) -> tuple[NDArray[np.int32], Floats]: ...
+    def basis_values(self) -> tuple[NDArray[np.int64], Floats]: ...
+    @property
+    def outside(self) -> NDArray[Any]: ...
+
+
+class Padding:
+    """How control points become the values that a basis sums: repeated or followed by zeros at the edges.
+
+    Parameters
+    ----------
+    shape
+        (3,) numbers of control points.
+    sources
+        For each axis, which control point each value is taken from; -1 for a zero.
+    """
+
+    def __init__(self, shape: tuple[int, int, int], sources: tuple[NDArray[np.int64], ...]) -> None:
+        self.shape, self._sources = shape, sources
+        self._plain = all(np.array_equal(s, np.arange(n)) for s, n in zip(sources, shape, strict=True))
+
+    def values(self, controls: Floats) -> Floats:
+        """(x, y, z, 3) what the basis sums, from (nx, ny, nz, 3)."""
+        if self._plain:
+            return np.ascontiguousarray(controls)
+        for axis, source in enumerate(self._sources):
+            controls = np.take(controls, np.maximum(source, 0), axis=axis)
+            if (source < 0).any():
+                controls[(slice(None),) * axis + (source < 0,)] = 0.0
+        return np.ascontiguousarray(controls)
+
+    def transpose(self, values: Floats) -> Floats:
+        """(nx, ny, nz, 3) the transpose of :meth:`values`."""
+        if self._plain:
+            return values
+        for axis, (source, count) in enumerate(zip(self._sources, self.shape, strict=True)):
+            share = (source == np.arange(count)[:, None]).astype(np.float64)
+            values = np.moveaxis(np.tensordot(share, values, axes=(1, axis)), 0, axis)
+        return np.ascontiguousarray(values)
+
+    def shares(self, index: tuple[int, ...]) -> Shares:
+        """For each axis, 1 where a value is taken from that control point, else 0."""
+        x, y, z = ((s == i).astype(np.float64) for s, i in zip(self._sources, index, strict=True))
+        return x, y, z
+
+    @property
+    def owners(self) -> NDArray[np.int64]:
+        """(x, y, z) the flat control point that each value is taken from; -1 for a zero."""
+        x, y, z = self._sources
+        i, j, k = x[:, None, None], y[None, :, None], z[None, None, :]
+        flat = (i * self.shape[1] + j) * self.shape[2] + k
+        return np.where((i < 0) | (j < 0) | (k < 0), -1, flat)
+
+
+class LatticeBinding(LinearBinding):
+    """x' = b + sum of basis functions times the displacements of the control points.
+
+    Parameters
+    ----------
+    sampled
+        The basis at the target's points.
+    padding
+        From control points to the values that the basis sums.
+    rest, displacements
+        (nx, ny, nz, 3) rest positions; the deformer's own displacements.
+    base
+        (n, 3) b, where the points are while the lattice rests.
+    """
+
+    def __init__(
+        self, sampled: SampledBasis, padding: Padding, rest: Controls, displacements: Controls, base: Points
+    ) -> None:
+        self._sampled, self._padding = sampled, padding
+        self._rest, self._displacements, self._base = rest, displacements, base
+
+    @property
+    def rest(self) -> Controls:
+        return self._rest
+
+    @property
+    def controls(self) -> Controls:
+        return self._rest + self._displacements
+
+    @property
+    def points(self) -> Points:
+        return self._sampled.points
+
+    def deform(self, controls: ArrayLike | None = None, out: Points | None = None) -> Points:
+        given = self._displacements if controls is None else checked_controls(controls, self._rest.shape) - self._rest
+        target = checked_out(out, len(self.points))
+        self._sampled.evaluate(self._padding.values(given), self._base, target)
+        return target
+
+    def jvp(self, controls: ArrayLike | None, d_controls: ArrayLike) -> Points:
+        tangent = checked_controls(d_controls, self._rest.shape)
+        target = np.empty((len(self.points), 3))
+        self._sampled.evaluate(self._padding.values(tangent), np.zeros_like(target), target)
+        return target
+
+    def vjp(self, controls: ArrayLike | None, d_points: ArrayLike) -> Controls:
+        gradient = checked_controls(d_points, self.points.shape)
+        return self._padding.transpose(self._sampled.transpose(gradient))
+
+    def drag(self, controls: ArrayLike | None = None) -> LatticeDrag:
+        return LatticeDrag(self, controls)
+
+    @property
+    def weights(self) -> LinearOperator:
+        """(n, m) W, for m control points in C order, each coordinate alike."""
+        count, controls = len(self.points), int(np.prod(self._rest.shape[:3]))
+
+        def forward(columns: Floats) -> Floats:
+            return _by_threes(lambda c: self.jvp(None, c.reshape(self._rest.shape)), columns, count)
+
+        def backward(columns: Floats) -> Floats:
+            return _by_threes(lambda p: self.vjp(None, p).reshape(-1, 3), columns, controls)
+
+        return LinearOperator((count, controls), forward, backward, forward, np.float64, backward)
+
+    def matrix(self) -> csr_array:
+        """(n, m) W as a sparse matrix: 64 numbers a point for cubic lattices, so ask for few points."""
+        columns, values = self._sampled.basis_values()
+        owners = self._padding.owners.reshape(-1)[columns]
+        rows = np.broadcast_to(np.arange(len(columns))[:, None], columns.shape)
+        kept = (owners >= 0) & (values != 0)
+        shape = (len(self.points), int(np.prod(self._rest.shape[:3])))
+        return csr_array((values[kept], (rows[kept], owners[kept])), shape=shape)
+
+
+class LatticeDrag(Drag):
+    """A drag that recomputes the points that the moved control points reach, and no others.
+
+    The weights of a control point are kept from its first move on: while the same one is dragged, each update is
+    one multiply-add a coordinate and point.
+    """
+
+    _binding: LatticeBinding
+
+    def __init__(self, binding: LatticeBinding, controls: ArrayLike | None = None) -> None:
+        super().__init__(binding, controls)
+        self._grabbed: _Column | None = None
+
+    def update(self, controls: ArrayLike, changed: Any = None) -> NDArray[np.int32]:
+        binding, new = self._binding, checked_controls(controls, self._controls.shape)
+        moved = np.argwhere((new != self._controls).any(axis=-1)) if changed is None else _indices(changed, new.shape)
+        if not len(moved):
+            return np.empty(0, np.int32)
+        if len(moved) > 1:
+            return self._move_several(new, moved)
+        index = tuple(int(i) for i in moved[0])
+        if self._grabbed is None or self._grabbed.index != index:
+            self._grabbed = _Column(binding, index, self._controls[index].copy(), self._buffer)
+        self._controls[index] = new[index]
+        return self._grabbed.move(new[index], self._buffer)
+
+    def _move_several(self, new: Controls, moved: NDArray[np.int64]) -> NDArray[np.int32]:
+        """Add the displacement field of the difference, in the cells that it reaches."""
+        from pliant.numerics.cells import CellPoints
+
+        self._grabbed = None
+        binding, sampled = self._binding, self._binding._sampled
+        rows = tuple(moved.T)
+        self._controls[rows] = new[rows]
+        values = binding._padding.values(self._controls - binding.rest)
+        if not isinstance(sampled, CellPoints):
+            sampled.evaluate(values, binding._base, self._buffer)
+            return np.setdiff1d(np.arange(len(self._buffer), dtype=np.int32), sampled.outside, assume_unique=True)
+        chosen = np.unique(np.concatenate([sampled.cells_of(binding._padding.shares(tuple(i))) for i in moved]))
+        sampled.evaluate(values, binding._base, self._buffer, chosen)
+        return sampled.points_of(chosen)
+
+
+class _Column:
+    """One grabbed control point: whom it reaches, how much, and where they were when it was grabbed."""
+
+    def __init__(self, binding: LatticeBinding, index: tuple[int, ...], start: Floats, buffer: Points) -> None:
+        self.index, self._start = index, start
+        self._points, self._weights = binding._sampled.column(binding._padding.shares(index))
+        self._anchors = buffer[self._points]
+
+    def move(self, position: Floats, buffer: Points) -> NDArray[np.int32]:
+        from pliant.numerics.cells import shift_points
+
+        shift_points(self._points, self._weights, self._anchors, position - self._start, buffer)
+        return self._points
+
+
+def _indices(changed: Any, shape: tuple[int, ...]) -> NDArray[np.int64]:
+    """(k, 3) control indices that the caller says have changed."""
+    index = np.asarray(changed, np.int64).reshape(-1, 3) if len(changed) else np.empty((0, 3), np.int64)
+    if ((index < 0) | (index >= shape[:3])).any():
+        raise InvalidControls(f"a changed control {index.tolist()} is not in a lattice of shape {shape[:3]}")
+    return index
+
+
+def _by_threes(apply: Callable[[Floats], Floats], columns: Floats, rows: int) -> Floats:
+    """Apply a map of (k, 3) arrays to the columns of a matrix, three at a time."""
+    matrix = np.asarray(columns, np.float64).reshape(len(columns), -1)
+    result = np.empty((rows, matrix.shape[1]))
+    for first in range(0, matrix.shape[1], 3):
+        part = matrix[:, first : first + 3]
+        padded = np.zeros((len(matrix), 3))
+        padded[:, : part.shape[1]] = part
+        result[:, first : first + 3] = apply(padded)[:, : part.shape[1]]
+    return result.reshape(rows, *np.shape(columns)[1:])
