@@ -13,7 +13,7 @@ from .io.report import LossReport as LossReport
 from .io.transforms import read_transform as read_transform
 from .io.transforms import write_transform as write_transform
 from .mesh import PolygonMesh as PolygonMesh
-from .rendering import render as render
+from .rendering.pictures import render as render
 from .space.affine import Affine as Affine
 from .space.bezier_ffd import BezierFFD as BezierFFD
 from .space.bspline_ffd import BSplineFFD as BSplineFFD

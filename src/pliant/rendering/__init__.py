@@ -1,0 +1,1 @@
+"""Pictures of shapes and of what deforms them, drawn off-screen."""
