@@ -155,14 +155,12 @@ class PolygonMesh:
             self._set(lines=Ragged.of(self.lines))
         _require_vertices(self.faces, len(points), "face")
         _require_vertices(self.lines, len(points), "line")
-        for name, labels in (
-            ("groups", self.groups),
-            ("objects", self.objects),
-            ("materials", self.materials),
-        ):
-            _require_length(name, labels and labels.indices, len(self.faces), "faces")
+        for name, labels in (("groups", self.groups), ("objects", self.objects), ("materials", self.materials)):
+            if labels is not None:
+                _require_length(name, labels.indices, len(self.faces), "faces")
         for name, corner in (("uvs", self.uvs), ("normals", self.normals)):
-            _require_length(name, corner and corner.indices, len(self.faces.flat), "corners")
+            if corner is not None:
+                _require_length(name, corner.indices, len(self.faces.flat), "corners")
         for name, values in self.vertex_attributes.items():
             _require_length(f"vertex attribute {name!r}", values, len(points), "vertices")
         for name, values in self.face_attributes.items():
@@ -361,6 +359,6 @@ def _require_vertices(rows: Ragged | None, count: int, kind: str) -> None:
     raise InvalidMesh(f"{kind} {rows.row_of[at]} uses vertex {rows.flat[at]}; there are {count} vertices")
 
 
-def _require_length(name: str, values: NDArray[Any] | None, count: int, what: str) -> None:
-    if values is not None and len(values) != count:
+def _require_length(name: str, values: NDArray[Any], count: int, what: str) -> None:
+    if len(values) != count:
         raise InvalidMesh(f"{name} has {len(values)} rows; there are {count} {what}")

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import numba
 import numpy as np
 
+from pliant.numerics.compiling import inlined, kernel
 from pliant.numerics.lanes import get, load, load_triples, put, spread, store, store_triples, where_between
-
-kernel = numba.njit(nogil=True, cache=True, fastmath={"contract", "reassoc"})
-inlined = numba.njit(nogil=True, fastmath={"contract", "reassoc"}, forceinline=True)
 
 
 @inlined

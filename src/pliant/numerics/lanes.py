@@ -22,7 +22,7 @@ _UNDEFINED = ir.Constant(_VECTOR, ir.Undefined)
 _FUSED = ("contract", "reassoc")
 
 
-class Lanes(types.Type):  # type: ignore[misc]  # numba is untyped
+class Lanes(types.Type):
     """The numba type of eight doubles."""
 
     def __init__(self) -> None:
@@ -33,12 +33,12 @@ lanes = Lanes()
 
 
 @register_model(Lanes)
-class _Model(models.PrimitiveModel):  # type: ignore[misc]
+class _Model(models.PrimitiveModel):
     def __init__(self, manager: Any, numba_type: Any) -> None:
         super().__init__(manager, numba_type, _VECTOR)
 
 
-class _Arithmetic(AbstractTemplate):  # type: ignore[misc]
+class _Arithmetic(AbstractTemplate):
     """Lanes with lanes, or with a float, give lanes."""
 
     def generic(self, args: Any, _keywords: Any) -> Any:

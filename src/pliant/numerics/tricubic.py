@@ -21,13 +21,10 @@ Arguments that the kernels share:
 
 from __future__ import annotations
 
-import numba
 import numpy as np
 
+from pliant.numerics.compiling import inlined, kernel
 from pliant.numerics.lanes import clamp, get, load, load_triples, put, store, store_triples, total, where_between, whole
-
-kernel = numba.njit(nogil=True, cache=True, fastmath={"contract", "reassoc"})
-inlined = numba.njit(nogil=True, fastmath={"contract", "reassoc"}, forceinline=True)
 
 
 @inlined
