@@ -178,8 +178,9 @@ class BSplineFFD(SpaceDeformer):
         frame[:, :3] = self.axes.T / self.spacing[:, None]
         frame[:, 3] = self._layers - 1 - frame[:, :3] @ self.origin
         limits = np.stack([np.zeros(3), counts.astype(np.float64)])
-        everywhere = np.array([[-np.inf] * 3, [np.inf] * 3])
-        return CellGrid(frame, counts, 1, BSPLINE, limits, everywhere)
+        ends = (self._layers == _LAYERS["zero"]) & (np.array(self.shape) > 1)
+        keep = np.where(ends, limits, [[-np.inf], [np.inf]])  # beyond a zero edge nothing moves, exactly
+        return CellGrid(frame, counts, 1, BSPLINE, limits, keep)
 
     @cached_property
     def _padding(self) -> Padding:
