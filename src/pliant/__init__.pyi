@@ -18,3 +18,4 @@ from .space.affine import Affine as Affine
 from .space.bezier_ffd import BezierFFD as BezierFFD
 from .space.bspline_ffd import BSplineFFD as BSplineFFD
 from .space.inverse import Inverse as Inverse
+from .space.placed import place as place

@@ -1,0 +1,107 @@
+"""The deformer that the options of a command describe."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import typer
+
+from pliant.cli.options import Edge, MeshSpace, Placement, Variant, lattice_move, lattice_shape, three_numbers
+
+if TYPE_CHECKING:
+    from pliant.deformer import SpaceDeformer
+    from pliant.mesh import PolygonMesh
+    from pliant.space.affine import Affine
+
+
+@dataclass(frozen=True)
+class Choice:
+    """Options as they were typed; :meth:`deformer` makes a deformer of them."""
+
+    ffd: Path | None = None
+    placement: Placement = Placement.physical
+    variant: Variant | None = None
+    edge: Edge = Edge.clamp
+    origin: str | None = None
+    lattice: str | None = None
+    margin: float = 0.0
+    moves: tuple[str, ...] = ()
+    inverse: bool = False
+    mesh_space: MeshSpace = MeshSpace.as_is
+
+    def deformer(self, mesh: PolygonMesh) -> SpaceDeformer | None:
+        """The deformer, in the space of the mesh; None where no option asks for one.
+
+        Raises
+        ------
+        typer.BadParameter
+            Options that contradict each other, or a control point that the lattice has not.
+        """
+        if self.ffd is not None and self.lattice is not None:
+            raise typer.BadParameter("give one of --ffd and --lattice, not both", param_hint="--lattice")
+        if self.ffd is None and self.lattice is None:
+            if self.moves or self.inverse:
+                raise typer.BadParameter("there is nothing to move or invert: add --ffd or --lattice")
+            return None
+        found = self._read(mesh) if self.ffd is not None else self._new(mesh)
+        if self.moves:
+            found = _moved(found, self.moves)
+        if self.mesh_space is MeshSpace.lps:
+            from pliant.space.placed import place
+
+            found = place(found, half_turn())
+        if self.inverse:
+            from pliant.space.inverse import Inverse
+
+            return Inverse(found)
+        return found
+
+    def required(self, mesh: PolygonMesh) -> SpaceDeformer:
+        """As :meth:`deformer`, where there must be one."""
+        found = self.deformer(mesh)
+        if found is None:
+            raise typer.BadParameter("say how to deform: --ffd FILE, or --lattice NxNxN with --move")
+        return found
+
+    def _read(self, mesh: PolygonMesh) -> SpaceDeformer:
+        from pliant.io.transforms import read_transform
+
+        assert self.ffd is not None
+        return read_transform(
+            self.ffd,
+            placement=self.placement.value,
+            variant=None if self.variant is None else self.variant.value,
+            target=half_turn()(mesh) if self.mesh_space is MeshSpace.lps else mesh,
+            edge=self.edge.value,
+            origin=None if self.origin is None else three_numbers(self.origin, "--origin"),
+        )
+
+    def _new(self, mesh: PolygonMesh) -> SpaceDeformer:
+        from pliant.space.bspline_ffd import BSplineFFD
+
+        assert self.lattice is not None
+        if self.mesh_space is MeshSpace.lps:
+            raise typer.BadParameter("--lattice is made in the mesh's own space; --mesh-space goes with --ffd")
+        return BSplineFFD.around(mesh, shape=lattice_shape(self.lattice), margin=self.margin, edge=self.edge.value)
+
+
+def half_turn() -> Affine:
+    """From LPS to RAS and back: x and y change sign, a half turn about z."""
+    from pliant.space.affine import Affine
+
+    return Affine.scaling((-1.0, -1.0, 1.0))
+
+
+def _moved(deformer: SpaceDeformer, moves: tuple[str, ...]) -> SpaceDeformer:
+    controls = deformer.controls.copy()
+    if controls.ndim != 4:
+        raise typer.BadParameter(f"a {type(deformer).__name__} has no lattice of control points", param_hint="--move")
+    for text in moves:
+        index, offset = lattice_move(text)
+        if any(i >= count for i, count in zip(index, controls.shape[:3], strict=True)):
+            size = " x ".join(map(str, controls.shape[:3]))
+            raise typer.BadParameter(f"{text!r}: the lattice has {size} control points", param_hint="--move")
+        controls[index] += offset
+    return deformer.moved(controls)

@@ -1,0 +1,72 @@
+"""``pliant deform``: a mesh in, the deformed mesh out."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+import typer
+
+from pliant.cli import options as opt
+from pliant.cli.choice import Choice
+from pliant.cli.session import Session
+
+if TYPE_CHECKING:
+    from pliant.mesh import PolygonMesh
+
+
+def deform(
+    mesh: opt.MeshArgument,
+    output: Annotated[Path, typer.Option("--output", "-o", metavar="OUT", help="Where to write the deformed mesh.")],
+    ffd: opt.FFDOption = None,
+    placement: opt.PlacementOption = opt.Placement.physical,
+    variant: opt.VariantOption = None,
+    edge: opt.EdgeOption = opt.Edge.clamp,
+    origin: opt.OriginOption = None,
+    lattice: opt.LatticeOption = None,
+    margin: opt.MarginOption = 0.0,
+    move: opt.MoveOption = None,
+    inverse: opt.InverseOption = False,
+    mesh_space: opt.MeshSpaceOption = opt.MeshSpace.as_is,
+    strict: opt.StrictOption = False,
+    json: opt.JsonOption = False,
+    quiet: opt.QuietOption = False,
+) -> None:
+    """Deform a mesh.
+
+    Give a transform file, or a new lattice whose control points you move. Polygons, texture coordinates, groups and
+    materials stay as they are; stored normals follow.
+    """
+    choice = Choice(ffd, placement, variant, edge, origin, lattice, margin, tuple(move or ()), inverse, mesh_space)
+    with Session(json=json, quiet=quiet) as session:
+        deform_file(session, mesh, output, choice, strict=strict)
+
+
+def deform_file(session: Session, path: Path, output: Path, choice: Choice, *, strict: bool = False) -> PolygonMesh:
+    """Read, deform, write, and report; the deformed mesh is returned."""
+    import numpy as np
+
+    from pliant.io.meshes import read, write
+
+    mesh = read(path)
+    session.say(f"read {path}: {len(mesh.points):,} points, {len(mesh.faces):,} faces")
+    deformer = choice.required(mesh)
+    moved = deformer(mesh)
+    length = np.linalg.norm(moved.points - mesh.points, axis=1)
+    largest, mean = float(length.max(initial=0.0)), float(length.mean()) if len(length) else 0.0
+    session.say(f"deformed: points moved by {mean:.4g} on average, {largest:.4g} at most")
+    report = write(moved, output, strict=strict)
+    for loss in report.losses:
+        session.warn(f"{output} does not hold: {loss}")
+    for note in report.notes:
+        session.say(f"note: {note}")
+    session.say(f"wrote {output}")
+    session.result(
+        input=path,
+        output=output,
+        points=len(mesh.points),
+        displacement={"mean": mean, "largest": largest},
+        losses=report.losses,
+        notes=report.notes,
+    )
+    return moved

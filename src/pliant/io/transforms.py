@@ -1,0 +1,156 @@
+"""Transform files: which format a file is of, and the two functions that users call.
+
+A format is one module of this package with ``read(path, data, options)`` and ``write(deformer, path, strict)``, and
+one line below. Modules are imported when a file of theirs turns up.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+from typing import Protocol, cast
+
+from numpy.typing import ArrayLike
+
+from pliant.deformer import Deformer, SpaceDeformer
+from pliant.errors import UnsupportedFormat
+from pliant.io.files import read_bytes
+from pliant.io.report import LossReport
+from pliant.io.transform_options import Edge, Placement, ReadOptions, Variant
+from pliant.mesh import PolygonMesh
+
+_HEAD = 4096  # bytes that are enough to tell formats apart
+
+
+class FormatModule(Protocol):
+    """What the module of a format offers."""
+
+    def read(self, path: Path, data: bytes, options: ReadOptions) -> SpaceDeformer:
+        """The deformer that the bytes of a file describe."""
+
+    def write(self, deformer: Deformer, path: Path, *, strict: bool) -> LossReport:
+        """Write the deformer, and tell what the file could not hold."""
+
+
+@dataclass(frozen=True)
+class TransformFormat:
+    """A format: how it is called, how its files end and begin, and the module that knows it."""
+
+    name: str
+    endings: tuple[str, ...]
+    signature: re.Pattern[bytes]
+    module: str
+
+    def load(self) -> FormatModule:
+        """The format's module."""
+        return cast(FormatModule, import_module(f"pliant.io.{self.module}"))
+
+
+FORMATS = (
+    TransformFormat("zxhproj FFD", (".ffd",), re.compile(rb"#\s*control grid size"), "zxhproj_ffd"),
+    TransformFormat("zxhproj AFF", (".aff",), re.compile(rb"#\s*(matrix|rotation center)"), "zxhproj_aff"),
+)
+
+
+def transform_format(path: Path | str, data: bytes = b"") -> TransformFormat | None:
+    """The format of a transform file: by content first, by ending where the content leaves it open.
+
+    Parameters
+    ----------
+    path
+        The file.
+    data
+        Its beginning; without it the ending decides.
+    """
+    name = Path(path).name.lower()
+    by_content = [known for known in FORMATS if known.signature.search(data[:_HEAD])]
+    by_ending = [known for known in FORMATS if name.endswith(known.endings)]
+    both = [known for known in by_content if known in by_ending]
+    return next(iter(both + by_content + by_ending), None)
+
+
+def read_transform(
+    path: Path | str,
+    *,
+    placement: Placement = "physical",
+    variant: Variant | None = None,
+    target: PolygonMesh | None = None,
+    edge: Edge = "clamp",
+    origin: ArrayLike | None = None,
+) -> SpaceDeformer:
+    """The map that a transform file describes.
+
+    The file's function is returned as it stands; its ``direction`` says what its owner uses it for.
+
+    Parameters
+    ----------
+    path
+        A file of any format in :data:`FORMATS`.
+    placement
+        ``"physical"``: the lattice lies where the file says. ``"fit"``: its box is laid around the target's
+        bounding box, measured along the lattice's own axes, and the deformation is scaled along each axis with
+        the box. Absolute control points (variant C) are not scaled: only the lattice at rest is fitted.
+    variant
+        The layout of a zxhproj ``.FFD``, where the guess would be wrong: ``"A"`` genuine, ``"B"`` with slabs of
+        equal x, ``"C"`` absolute control points of a Bernstein lattice, ``"D"`` one point a line.
+    target
+        The mesh to fit to.
+    edge
+        Beyond a B-spline lattice: ``"clamp"`` repeats its outermost control points, ``"zero"`` takes no
+        displacement there.
+    origin
+        (3,) where control point (0, 0, 0) lies, for a file that does not say; otherwise (0, 0, 0), with a warning.
+
+    Raises
+    ------
+    UnreadableFile
+        The file is not there, truncated or contradicts itself.
+    UnsupportedFormat
+        No transform format that pliant reads.
+    InvalidParameter, InvalidTarget
+        A choice that there is not; ``placement="fit"`` without a target, or with a target that has no extent.
+
+    Warns
+    -----
+    PliantWarning
+        Something had to be guessed; the message says what, and how to override it.
+    """
+    path = Path(path)
+    options = ReadOptions(placement, variant, target, edge, origin)
+    data = read_bytes(path)
+    found = transform_format(path, data)
+    if found is None:
+        raise UnsupportedFormat(f"{path}: no transform format that pliant reads ({_known_endings()})")
+    return found.load().read(path, data, options)
+
+
+def write_transform(deformer: Deformer, path: Path | str, *, strict: bool = False) -> LossReport:
+    """Write a deformer to a transform file, whose format its ending tells.
+
+    Parameters
+    ----------
+    deformer
+        The deformer; each format holds some kinds only.
+    path
+        Where to. An existing file is replaced, at once or not at all.
+    strict
+        Refuse to write a file that would lose something.
+
+    Raises
+    ------
+    UnsupportedFormat
+        An ending that pliant does not know, or a deformer that the format cannot hold.
+    LossRefused
+        ``strict``, and something would be lost.
+    """
+    path = Path(path)
+    found = transform_format(path)
+    if found is None:
+        raise UnsupportedFormat(f"{path}: no transform format that pliant writes ({_known_endings()})")
+    return found.load().write(deformer, path, strict=strict)
+
+
+def _known_endings() -> str:
+    return ", ".join(ending for known in FORMATS for ending in known.endings)
