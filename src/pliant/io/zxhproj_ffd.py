@@ -6,6 +6,7 @@ millimetres. Its owner uses it to fetch each point of an image from where it cam
 
 from __future__ import annotations
 
+import re
 import warnings
 from collections import Counter
 from collections.abc import Mapping
@@ -30,6 +31,7 @@ from pliant.space.bspline_ffd import BSplineFFD
 Floats = NDArray[np.float64]
 Blocks = Mapping[str, Block]
 
+_SIX_DECIMALS = re.compile(rb"\.[0-9]{6}(?!\S)")
 _LONGEST = 1.01  # the square of a quaternion's length, with room for rounding
 _OFFSETS = "offsets of the control points"
 
@@ -44,16 +46,17 @@ def read(path: Path, data: bytes, options: ReadOptions) -> SpaceDeformer:
     spacing = np.ones(3)
     spacing[:size_count] = _spacing(path, blocks, size_count)
     layout = _layout(blocks, options, values, _points_a_line(row_lengths, per_point), shape, spacing)
-    frame = _frame(path, blocks, spacing, options)
+    frame = _frame(blocks, spacing, options)
     offsets = np.zeros((*shape, 3))
     offsets[..., :per_point] = layout.arrange(values, shape)
     if layout.guessed:
-        _warn(f"{path}: read as variant {layout.variant} ({layout.reason}); pass variant= to override")
-    placed = (
-        frame
-        if options.target is None or options.placement == "physical"
-        else frame.fitted(shape, options.target, path)
-    )
+        _warn(f"{path} is read as variant {layout.variant} ({layout.reason}); pass variant= to override")
+    if "quaternion" not in blocks and options.origin is None and options.fit_to is None:
+        _warn(
+            f"{path} does not say where its lattice lies: control point (0, 0, 0) is put at (0, 0, 0); pass origin=, "
+            "or placement='fit' with the mesh as target="
+        )
+    placed = frame if options.fit_to is None else frame.fitted(shape, options.fit_to, path)
     if layout.variant == "C":
         return _bernstein(offsets, placed)
     one_to_one = blocks["one to one"].text if "one to one" in blocks else "1"
@@ -123,8 +126,11 @@ def _layout(
 ) -> Layout:
     if options.variant in ("A", "B", "D"):
         return Layout(options.variant, "as asked for", x_first=options.variant == "B")
-    is_genuine_format = shape[0] == shape[2] and all(
-        _has_six_decimals(word) for name in ("control grid spacing", _OFFSETS) for word in blocks[name].body.split()
+    length = blocks["control grid spacing"].body
+    is_genuine_format = (
+        shape[0] == shape[2]
+        and _all_six_decimals(length, len(length.split()))
+        and _all_six_decimals(blocks[_OFFSETS].body, values.size)
     )
     layout = order_of(row_lengths, shape, is_genuine_format, "quaternion" in blocks)
     if options.variant == "C":
@@ -132,18 +138,13 @@ def _layout(
     return absolute(layout, values, shape, spacing)
 
 
-def _frame(path: Path, blocks: Blocks, spacing: Floats, options: ReadOptions) -> LatticeFrame:
+def _frame(blocks: Blocks, spacing: Floats, options: ReadOptions) -> LatticeFrame:
     if "quaternion" in blocks:
         numbers = blocks["quaternion"].numbers(7)
         qfac, bcd, origin = float(numbers[0]), numbers[1:4], numbers[4:]
         if not bcd @ bcd < _LONGEST:
             raise blocks["quaternion"].error(f"qb, qc, qd = {bcd.tolist()} are no part of a unit quaternion")
         return LatticeFrame(origin, spacing, axes_of(qfac, bcd))
-    if options.origin is None and options.placement == "physical":
-        _warn(
-            f"{path} does not say where its lattice lies: control point (0, 0, 0) is put at (0, 0, 0); pass origin=, "
-            "or placement='fit' with the mesh as target="
-        )
     origin = np.zeros(3) if options.origin is None else np.asarray(options.origin, np.float64)
     return LatticeFrame(origin, spacing, np.eye(3))
 
@@ -154,10 +155,9 @@ def _bernstein(controls: Floats, frame: LatticeFrame) -> BezierFFD:
     return BezierFFD.around(corners, shape=shape, axes=frame.axes).moved(controls)
 
 
-def _has_six_decimals(word: bytes) -> bool:
-    decimals = word.partition(b".")[2]
-    return len(decimals) == 6 and decimals.isdigit()
+def _all_six_decimals(body: bytes, words: int) -> bool:
+    return len(_SIX_DECIMALS.findall(body)) == words
 
 
 def _warn(message: str) -> None:
-    warnings.warn(message, PliantWarning, stacklevel=5)
+    warnings.warn(message, PliantWarning, stacklevel=4)  # the caller of read_transform
