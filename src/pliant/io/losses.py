@@ -13,6 +13,7 @@ from pliant.io.carrier import Carrier
 from pliant.io.colors import as_bytes, as_float, is_color
 from pliant.io.format import Keeps
 from pliant.mesh import CornerValues, PolygonMesh
+from pliant.numerics.chunks import for_chunks
 
 
 def losses_of(
@@ -47,7 +48,9 @@ def _shape(mesh: PolygonMesh, keeps: Keeps) -> Iterator[str]:
             yield f"{count:,} faces of fewer than three corners"
     flat = mesh.faces.flat
     if not keeps.shared_vertices and not (len(flat) == len(mesh.points) and (flat == np.arange(len(flat))).all()):
-        unused = len(mesh.points) - len(np.unique(flat))
+        used = np.zeros(len(mesh.points), bool)
+        used[flat] = True
+        unused = len(used) - int(used.sum())
         yield "triangles no longer share vertices" + (f"; {unused:,} unused vertices" if unused else "")
     if mesh.lines is not None and not keeps.lines:
         yield f"{len(mesh.lines):,} lines"
@@ -111,12 +114,19 @@ def as_float32(points: NDArray[np.float64], name: str) -> tuple[NDArray[np.float
     UnsupportedFormat
         Coordinates beyond the range of single precision.
     """
-    with np.errstate(over="ignore"):
-        rounded = points.astype(np.float32)
-    if not np.isfinite(rounded).all():
-        largest = np.abs(points).max()
+    rounded = np.empty(points.shape, np.float32)
+    errors = [0.0]
+
+    def work(first: int, stop: int) -> None:
+        with np.errstate(over="ignore"):
+            rounded[first:stop] = points[first:stop]
+        errors.append(float(np.abs(rounded[first:stop] - points[first:stop]).max()))
+
+    for_chunks(work, len(points))
+    error = max(errors)
+    if not np.isfinite(error):
         raise UnsupportedFormat(
-            f"{name} stores coordinates in 32 bits, which end at 3.4e38; the largest here is {largest:.3g}: scale the mesh"
+            f"{name} stores coordinates in 32 bits, which end at 3.4e38; the largest here is "
+            f"{np.abs(points).max():.3g}: scale the mesh"
         )
-    error = np.abs(rounded - points).max(initial=0.0)
     return rounded, (f"coordinates are rounded to 32 bits: by up to {error:.2g}",) if error > 0 else ()

@@ -109,6 +109,11 @@ def place(name: str, data: bytes, folder: Path, stem: str) -> str:
     return f"{stem}-{portable.name}"
 
 
+def _renamed(data: bytes, name: str, used: str) -> bytes:
+    """A library whose statements name a picture otherwise."""
+    return re.sub(rb"(?m)(?<=\s)" + re.escape(bytes_of(name)) + rb"(?=\s*$)", lambda _: bytes_of(used), data)
+
+
 def gather(libraries: list[Library], path: Path) -> tuple[dict[Path, bytes], dict[str, str], list[str]]:
     """The files that must stand beside a mesh file, for its materials and pictures to be found.
 
@@ -134,9 +139,7 @@ def gather(libraries: list[Library], path: Path) -> tuple[dict[Path, bytes], dic
             content = found.read_bytes()
             used = name if Path(name).is_absolute() else place(name, content, path.parent, path.stem)
             if used != name:
-                data = re.sub(
-                    rb"(?m)(?<=\s)" + re.escape(bytes_of(name)) + rb"(?=\s*$)", lambda _, u=used: bytes_of(u), data
-                )
+                data = _renamed(data, name, used)
             files[path.parent / used] = content
         used = place(library.name, data, path.parent, path.stem)
         if used != library.name:

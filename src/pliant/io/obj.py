@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 import warnings
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -47,12 +46,14 @@ class Obj(MeshFormat):
     )
 
     def sniff(self, data: bytes) -> bool:
+        """Whether the first statement is one of OBJ's."""
         head = data[:4096].removeprefix(b"\xef\xbb\xbf")
         lines = [line.strip() for line in head.splitlines()]
         first = next((line for line in lines if line and not line.startswith(b"#")), b"")
         return b"\0" not in head and _BEGINNING.match(first + b" ") is not None
 
     def read(self, source: Source) -> PolygonMesh:
+        """The mesh that an OBJ file holds."""
         text = plain_text(source)
         lines = Lines.of(text)
         rows = {kind: lines.where(*words) for kind, words in _KINDS.items()}
@@ -82,6 +83,7 @@ class Obj(MeshFormat):
         return with_carrier(mesh, self.name, source.data, layout, unique)
 
     def encode(self, mesh: PolygonMesh, path: Path) -> Encoded:
+        """The file that the mesh was read from, with other numbers; a new one if that was none or another."""
         carrier = carrier_of(mesh, self.name)
         return obj_writer.same_file(mesh, carrier, path) if carrier else obj_writer.new_file(mesh, self, path)
 
@@ -176,7 +178,7 @@ def parse_elements(source: Source, lines: Lines) -> tuple[NDArray[np.int32], Off
     wrong: list[int] = []
 
     def work(first: int, stop: int) -> None:
-        wrong.append(parse_corners(lines.bytes, lines.body, lines.end, offsets, first, stop, table, normals))
+        wrong.append(parse_corners(lines.octets, lines.body, lines.end, offsets, first, stop, table, normals))
 
     for_chunks(work, len(lines))
     if any(at >= 0 for at in wrong):
@@ -187,10 +189,11 @@ def parse_elements(source: Source, lines: Lines) -> tuple[NDArray[np.int32], Off
 
 
 def _states(lines: Lines, word: bytes, faces: Offsets) -> tuple[list[str], NDArray[np.int32]]:
-    """What each statement of a kind says, each text once, and which of them holds at each face; -1 = none yet."""
+    """What each statement of a kind says, each text once, and which of them holds at each face; -1 = none."""
     at = lines.where(word)
     names: dict[str, int] = {}
-    ids = [names.setdefault(text_of(lines.rest(row)), len(names)) for row in at]
+    said = (text_of(lines.rest(row)) for row in at)
+    ids = [names.setdefault(name, len(names)) if name else -1 for name in said]
     return list(names), np.array([-1, *ids], np.int32)[np.searchsorted(at, faces)]
 
 

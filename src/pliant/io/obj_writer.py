@@ -144,8 +144,8 @@ def _faces(mesh: PolygonMesh, normals: CornerValues | None) -> list[bytes]:
         if labels is not None:
             states.append((word, labels.indices, [bytes_of(name) for name in labels.names]))
     if "smoothing" in mesh.face_attributes:
-        numbers, indices = np.unique(mesh.face_attributes["smoothing"], return_inverse=True)
-        states.append((b"s", indices.astype(np.int32), [b"%d" % number for number in numbers]))
+        numbers, which = np.unique(mesh.face_attributes["smoothing"], return_inverse=True)
+        states.append((b"s", which.astype(np.int32), [b"%d" % number for number in numbers]))
     if not states or not len(mesh.faces):
         return [text]
     ends = np.flatnonzero(np.frombuffer(text, np.uint8) == 10) + 1

@@ -38,9 +38,11 @@ class Off(MeshFormat):
     keeps = Keeps(polygons=True, vertex_normals=True, vertex_colors=True, face_colors=True)
 
     def sniff(self, data: bytes) -> bool:
+        """Whether the file begins with OFF or one of its forms."""
         return _HEADER.match(data[:4096]) is not None
 
     def read(self, source: Source) -> PolygonMesh:
+        """The mesh that an OFF file holds."""
         header = _HEADER.match(source.data)
         if header is None:
             raise source.unreadable("the file does not begin with OFF", "check what it is", at=0)
@@ -65,6 +67,7 @@ class Off(MeshFormat):
         return with_carrier(mesh, self.name, source.data, layout)
 
     def encode(self, mesh: PolygonMesh, path: Path) -> Encoded:
+        """The file that the mesh was read from, with other numbers; a new one if that was none or another."""
         carrier = carrier_of(mesh, self.name)
         if carrier is None:
             return _new_file(mesh, self.keeps)

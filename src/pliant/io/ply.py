@@ -43,15 +43,18 @@ class Ply(MeshFormat):
     )
 
     def sniff(self, data: bytes) -> bool:
+        """Whether the file begins with the word ply."""
         return data[:4] in (b"ply\n", b"ply\r", b"ply ")
 
     def read(self, source: Source) -> PolygonMesh:
+        """The mesh that a PLY file holds."""
         if not self.sniff(source.data):
             raise source.unreadable("the file does not begin with 'ply'", "check what it is", at=0)
         header = parse(source)
         return _Reading(source, header, decode(source, header)).mesh()
 
     def encode(self, mesh: PolygonMesh, path: Path) -> Encoded:
+        """The file that the mesh was read from, with other numbers; a new one if that was none or another."""
         carrier = carrier_of(mesh, self.name)
         return ply_writer.same_file(mesh, carrier) if carrier else ply_writer.new_file(mesh, self.keeps)
 
@@ -138,7 +141,8 @@ class _Reading:
         odd = ((at - first[at]) % 2).astype(bool)
         trio[odd] = trio[odd][:, [1, 0, 2]]
         distinct = (trio[:, 0] != trio[:, 1]) & (trio[:, 1] != trio[:, 2]) & (trio[:, 0] != trio[:, 2])
-        return trio[within & distinct].astype(np.int32)
+        kept: NDArray[np.int32] = trio[within & distinct].astype(np.int32)
+        return kept
 
     def _corner_uvs(self, face: Columns, faces: Ragged) -> CornerValues | None:
         column = face.get("texcoord")
@@ -169,8 +173,8 @@ class _Reading:
         columns = {name: self._typed(column, types[name]) for name, column in columns.items()}
         names = next((names for names in _COLORS if set(names) <= set(columns)), None)
         if names is not None:
-            names = (*names, *[name for name in _ALPHAS if name in columns][:1])
-            result["colors"] = np.stack([columns.pop(name).values for name in names], axis=1)
+            alphas = [name for name in _ALPHAS if name in columns][:1]
+            result["colors"] = np.stack([columns.pop(name).values for name in (*names, *alphas)], axis=1)
         for name, column in columns.items():
             if column.offsets is None:
                 result[name] = column.values

@@ -73,12 +73,13 @@ def _element(
     if all(each.count is None for each in element.properties):
         raise _cut(source, element, (len(data) - at) // sum(each.itemsize for each in types), order)
     places, lengths = np.empty((rows, len(types)), np.int64), np.empty((rows, len(types)), np.int64)
+    widths = [each.itemsize if each else 0 for each in counts]
     end = walk_lists(
         data,
         at,
         rows,
         np.array([each.itemsize for each in types]),
-        np.array([each.itemsize if each else 0 for each in counts]),
+        np.array(widths),
         np.array([2 if not order else int(each is not None and each.kind == "i") for each in counts]),
         order != ">",
         places,
@@ -90,7 +91,7 @@ def _element(
     for i, each in enumerate(element.properties):
         offsets = np.concatenate([[0], np.cumsum(lengths[:, i])])
         width = types[i].itemsize
-        first = places[:, i] + (counts[i].itemsize if counts[i] else 0)
+        first = places[:, i] + widths[i]
         items = np.repeat(first - width * offsets[:-1], lengths[:, i]) + width * np.arange(offsets[-1])
         values = data[items[:, None] + np.arange(width)].reshape(-1).view(types[i])
         columns[each.name] = Column(_native(values), places[:, i], offsets if each.count else None)

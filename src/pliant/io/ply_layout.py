@@ -4,22 +4,27 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass
+from typing import Literal
 
 import numpy as np
 
 from pliant.io.format import Source
 from pliant.io.text import text_of
 
-TYPES = {
-    "char": "i1", "uchar": "u1", "short": "i2", "ushort": "u2", "int": "i4", "uint": "u4", "float": "f4", "double": "f8",
-    "int8": "i1", "uint8": "u1", "int16": "i2", "uint16": "u2", "int32": "i4", "uint32": "u4", "float32": "f4",
-    "float64": "f8",
-}  # fmt: skip
-NAMES = {
-    "i1": "char", "u1": "uchar", "i2": "short", "u2": "ushort", "i4": "int", "u4": "uint", "f4": "float", "f8": "double",
-}  # fmt: skip
+_WORDS = {
+    "i1": ("char", "int8"),
+    "u1": ("uchar", "uint8"),
+    "i2": ("short", "int16"),
+    "u2": ("ushort", "uint16"),
+    "i4": ("int", "int32"),
+    "u4": ("uint", "uint32"),
+    "f4": ("float", "float32"),
+    "f8": ("double", "float64"),
+}
+TYPES = {word: kind for kind, words in _WORDS.items() for word in words}
+NAMES = {kind: words[0] for kind, words in _WORDS.items()}
 _END = re.compile(rb"(?:^|[\r\n])end_header[ \t]*(\r\n|\n|\r)")
-_ENCODINGS = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
+_ENCODINGS: dict[str, Literal["", "<", ">"]] = {"ascii": "", "binary_little_endian": "<", "binary_big_endian": ">"}
 
 
 @dataclass(frozen=True)
@@ -50,7 +55,7 @@ class Element:
 class Header:
     """What a PLY file says of itself; ``order`` is ``<`` or ``>``, or empty for text."""
 
-    order: str
+    order: Literal["", "<", ">"]
     elements: tuple[Element, ...]
     size: int
 
@@ -68,7 +73,7 @@ def parse(source: Source) -> Header:
         raise source.unreadable(
             "the header does not end", "the file is cut off before 'end_header': copy it again", at=0
         )
-    order: str | None = None
+    order: Literal["", "<", ">"] | None = None
     elements: list[Element] = []
     at = 0
     for raw in re.split(rb"\r\n|\n|\r", source.data[: end.start()])[1:]:

@@ -14,27 +14,27 @@ def walk_lists(data, begin, rows, sizes, counts, kinds, little, places, lengths)
     counts that are signed and 2 for such as are float64. ``places`` receives each property's first byte, ``lengths``
     the length of its list.
     """
-    at = begin
+    at = np.int64(begin)
     number = np.empty(1, np.float64)
     raw = number.view(np.uint8)
     for row in range(rows):
         for column in range(len(sizes)):
             places[row, column] = at
-            length, width = 1, counts[column]
+            length, width = np.int64(1), counts[column]
             if width:
                 if at + width > len(data):
                     return -1 - row
                 if kinds[column] == 2:
                     for byte in range(8):
                         raw[byte] = data[at + byte]
-                    length = np.int64(number[0]) if 0 <= number[0] < 2**31 and number[0] % 1 == 0 else -1
+                    length = np.int64(number[0] if 0 <= number[0] < 2**31 and number[0] % 1 == 0 else -1)
                 else:
-                    length = 0
+                    length = np.int64(0)
                     for byte in range(width):
                         shift = byte if little else width - 1 - byte
                         length |= np.int64(data[at + byte]) << (8 * shift)
                     if kinds[column] == 1 and length >> (8 * width - 1):
-                        length = -1
+                        length = np.int64(-1)
                 if length < 0:
                     return -1 - row
                 at += width

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-from typing import Any
+from functools import cached_property
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,17 +28,9 @@ _COLORS = ("red", "green", "blue", "alpha")
 class Layout:
     """Where positions and normals stand: a column for each coordinate. ``order`` is the file's byte order."""
 
-    order: str
+    order: Literal["", "<", ">"]
     points: tuple[Column, ...]
     normals: tuple[Column, ...]
-
-
-@dataclass(frozen=True, eq=False)
-class Lists:
-    """Rows of any type, one after another."""
-
-    values: NDArray[Any]
-    offsets: NDArray[np.int64]
 
 
 def same_file(mesh: PolygonMesh, carrier: Carrier) -> Encoded:
@@ -60,7 +54,9 @@ def same_file(mesh: PolygonMesh, carrier: Carrier) -> Encoded:
     return Encoded([data.data], notes=notes)
 
 
-def _put(data: NDArray[np.uint8], column: Column, order: str, old: NDArray[Any], new: NDArray[np.float64]) -> float:
+def _put(
+    data: NDArray[np.uint8], column: Column, order: Literal["<", ">"], old: NDArray[Any], new: NDArray[np.float64]
+) -> float:
     """Put the values that differ where they stand; returns the largest rounding error."""
     changed = new != old
     if not changed.any():
@@ -74,7 +70,7 @@ def _put(data: NDArray[np.uint8], column: Column, order: str, old: NDArray[Any],
         raise UnsupportedFormat(f"the file stores coordinates as {NAMES[kind.str[1:]]}; the new ones do not fit")
     stored = typed.astype(kind.newbyteorder(order))
     if isinstance(column.at, range):
-        view = np.ndarray(len(column.at), stored.dtype, data, column.at.start, (column.at.step,))  # type: ignore[arg-type]
+        view = np.ndarray(len(column.at), stored.dtype, data, column.at.start, (column.at.step,))
         np.copyto(view, stored, where=changed)
     else:
         at = column.at[changed]
@@ -85,58 +81,90 @@ def _put(data: NDArray[np.uint8], column: Column, order: str, old: NDArray[Any],
 def new_file(mesh: PolygonMesh, keeps: Keeps) -> Encoded:
     """A file written from the mesh alone: float64 positions, everything else in its own type."""
     losses = list(losses_of(mesh, keeps))
-    vertex: list[tuple[str, NDArray[Any]]] = [(name, mesh.points[:, axis]) for axis, name in enumerate("xyz")]
+    vertex: list[Block | Lists] = [Block(("x", "y", "z"), mesh.points)]
+    face: list[Block | Lists] = []
     attributes = dict(mesh.vertex_attributes)
     normals = attributes.pop("normals", None)
     if normals is None and mesh.normals is not None and per_vertex(mesh, mesh.normals):
         normals = mesh.normals.values
     if normals is not None:
-        vertex += [(name, normals[:, axis]) for axis, name in enumerate(("nx", "ny", "nz"))]
-    face: list[tuple[str, Any]] = []
+        vertex.append(Block(("nx", "ny", "nz"), normals))
     if mesh.uvs is not None:
         if mesh.uvs.values.shape[1] != 2 or (mesh.uvs.indices < 0).any():
             losses.append("texture coordinates of three components, and corners without any")
         if per_vertex(mesh, mesh.uvs):
-            vertex += [(name, mesh.uvs.values[:, axis]) for axis, name in enumerate("st")]
+            vertex.append(Block(("s", "t"), mesh.uvs.values[:, :2]))
         else:
-            values = np.nan_to_num(mesh.uvs.per_corner[:, :2])
-            face.append(("texcoord", Lists(values.ravel(), 2 * mesh.faces.offsets)))
-    vertex += _columns("vertex", attributes, losses)
-    face += _columns("face", dict(mesh.face_attributes), losses)
-    head = [b"ply\nformat binary_little_endian 1.0\nelement vertex %d\n" % len(mesh.points)]
-    parts: list[bytes | memoryview] = []
-    lines, body = _table(vertex, len(mesh.points))
-    head, parts = [*head, lines], [body]
+            face.append(Lists("texcoord", np.nan_to_num(mesh.uvs.per_corner[:, :2]).ravel(), 2 * mesh.faces.offsets))
+    vertex += _properties("vertex", attributes, losses)
+    face += _properties("face", dict(mesh.face_attributes), losses)
+    elements = [("vertex", len(mesh.points), vertex)]
     if len(mesh.faces) or face:
-        polygons = Lists(mesh.faces.flat, mesh.faces.offsets)
-        lines, body = _table([("vertex_indices", polygons), *face], len(mesh.faces))
-        head, parts = [*head, b"element face %d\n" % len(mesh.faces), lines], [*parts, body]
+        polygons = Lists("vertex_indices", mesh.faces.flat, mesh.faces.offsets)
+        elements.append(("face", len(mesh.faces), [polygons, *face]))
     if mesh.lines is not None:
         ends, longer = _segments(mesh.lines)
         if longer:
             losses.append(f"{longer:,} lines of more than two points are cut into segments")
-        lines, body = _table([("vertex1", ends[:, 0]), ("vertex2", ends[:, 1])], len(ends))
-        head, parts = [*head, b"element edge %d\n" % len(ends), lines], [*parts, body]
-    return Encoded([b"".join(head) + b"end_header\n", *parts], tuple(losses))
+        elements.append(("edge", len(ends), [Block(("vertex1", "vertex2"), ends)]))
+    head = ["ply\nformat binary_little_endian 1.0\n"]
+    for name, rows, columns in elements:
+        head += [f"element {name} {rows}\n", *(column.header() for column in columns)]
+    body = [_packed(columns, rows) for _, rows, columns in elements]
+    return Encoded([bytes_of("".join([*head, "end_header\n"])), *body], tuple(losses))
 
 
-def _columns(element: str, attributes: dict[str, NDArray[Any]], losses: list[str]) -> list[tuple[str, Any]]:
+@dataclass(frozen=True, eq=False)
+class Block:
+    """Properties of one type side by side: (n, d) values."""
+
+    names: tuple[str, ...]
+    values: NDArray[Any]
+
+    def header(self) -> str:
+        """The lines that declare it."""
+        return "".join(f"property {NAMES[self.values.dtype.str[1:]]} {name}\n" for name in self.names)
+
+
+@dataclass(frozen=True, eq=False)
+class Lists:
+    """A property whose rows are lists, one after another."""
+
+    name: str
+    values: NDArray[Any]
+    offsets: NDArray[np.int64]
+
+    @cached_property
+    def lengths(self) -> NDArray[np.int64]:
+        """How long each list is."""
+        return np.diff(self.offsets)
+
+    @cached_property
+    def count(self) -> np.dtype[Any]:
+        """The type that lengths are stored in."""
+        return np.dtype("u1" if self.lengths.max(initial=0) < 256 else "<i4")
+
+    def header(self) -> str:
+        """The line that declares it."""
+        return f"property list {NAMES[self.count.str[1:]]} {NAMES[self.values.dtype.str[1:]]} {self.name}\n"
+
+
+def _properties(element: str, attributes: dict[str, NDArray[Any]], losses: list[str]) -> list[Block | Lists]:
     """Attributes as properties: one each, or a list where a row has several values."""
-    result: list[tuple[str, Any]] = []
+    result: list[Block | Lists] = []
     for name, values in attributes.items():
-        word = bytes_of(name).replace(b" ", b"_").decode("utf-8", "surrogateescape")
+        word = "_".join(name.split())
+        typed = _storable(values)
         if name == "colors" and is_color(values):
             losses += color_rounding(values)
-            result += [(color, as_bytes(values)[:, i]) for i, color in enumerate(_COLORS[: values.shape[1]])]
-            continue
-        typed = _storable(values)
-        if typed is None or not word:
+            result.append(Block(_COLORS[: values.shape[1]], as_bytes(values)))
+        elif typed is None or not word:
             losses.append(f"the {element} attribute {name!r}, of type {values.dtype}")
         elif typed.ndim == 1:
-            result.append((word, typed))
+            result.append(Block((word,), typed[:, None]))
         else:
-            flat = typed.reshape(len(typed), -1)
-            result.append((word, Lists(flat.ravel(), np.arange(len(flat) + 1) * flat.shape[1])))
+            flat = typed.reshape(len(typed), math.prod(typed.shape[1:]))
+            result.append(Lists(word, flat.ravel(), np.arange(len(flat) + 1) * flat.shape[1]))
     return result
 
 
@@ -159,44 +187,45 @@ def _segments(lines: Ragged) -> tuple[NDArray[np.int32], int]:
     return np.stack([lines.flat[at], lines.flat[at + 1]], axis=1), int((lines.lengths != 2).sum())
 
 
-def _table(columns: list[tuple[str, Any]], rows: int) -> tuple[bytes, memoryview]:
-    """An element's header lines and its body."""
-    head, fields, values = [], [], []
-    for name, column in columns:
-        if isinstance(column, Lists):
-            lengths = np.diff(column.offsets)
-            count = np.dtype("u1" if lengths.max(initial=0) < 256 else "<i4")
-            kind = column.values.dtype.newbyteorder("<")
-            head.append(f"property list {NAMES[count.str[1:]]} {NAMES[kind.str[1:]]} {name}\n")
-            fields += [count, kind]
-            values += [
-                Lists(lengths.astype(count), np.arange(rows + 1)),
-                Lists(column.values.astype(kind), column.offsets),
-            ]
-        else:
-            kind = column.dtype.newbyteorder("<")
-            head.append(f"property {NAMES[kind.str[1:]]} {name}\n")
-            fields.append(kind)
-            values.append(Lists(column.astype(kind), np.arange(rows + 1)))
-    return bytes_of("".join(head)), _packed(values, rows)
-
-
-def _packed(columns: list[Lists], rows: int) -> memoryview:
+def _packed(columns: list[Block | Lists], rows: int) -> memoryview:
     """The rows of all columns, interleaved."""
-    lengths = [np.diff(column.offsets) for column in columns]
-    if rows and all((each == each[0]).all() for each in lengths):
-        shapes = [(column.values.dtype, (int(each[0]),)) for column, each in zip(columns, lengths, strict=True)]
-        record = np.empty(rows, np.dtype([(str(i), *shape) for i, shape in enumerate(shapes)]))
-        for i, column in enumerate(columns):
-            record[str(i)] = column.values.reshape(rows, -1)
-        return record.view(np.uint8).data
-    sizes = np.stack([each * column.values.itemsize for column, each in zip(columns, lengths, strict=True)])
-    ends = np.cumsum(sizes.sum(axis=0))
+    lists = [column for column in columns if isinstance(column, Lists)]
+    if rows and all((column.lengths == column.lengths[0]).all() for column in lists):
+        return _packed_alike(columns, rows)
+    pieces = []  # (values, how many a row) of each count, list and block
+    for column in columns:
+        if isinstance(column, Lists):
+            pieces.append((column.lengths.astype(column.count), np.ones(rows, np.int64)))
+            pieces.append((_little(column.values), column.lengths))
+        else:
+            pieces.append((_little(column.values).ravel(), np.full(rows, column.values.shape[1])))
+    sizes = [length * values.itemsize for values, length in pieces]
+    ends = np.cumsum(np.sum(sizes, axis=0))
     body = np.empty(int(ends[-1]) if rows else 0, np.uint8)
-    place = ends - sizes.sum(axis=0)
-    for column, length, size in zip(columns, lengths, sizes, strict=True):
-        width = column.values.itemsize
-        at = np.repeat(place - width * column.offsets[:-1], length) + width * np.arange(len(column.values))
-        body[at[:, None] + np.arange(width)] = column.values.view(np.uint8).reshape(-1, width)
+    place = ends - np.sum(sizes, axis=0)
+    for (values, length), size in zip(pieces, sizes, strict=True):
+        width = values.itemsize
+        at = np.repeat(place - width * (np.cumsum(length) - length), length) + width * np.arange(len(values))
+        body[at[:, None] + np.arange(width)] = np.ascontiguousarray(values).view(np.uint8).reshape(-1, width)
         place = place + size
     return body.data
+
+
+def _packed_alike(columns: list[Block | Lists], rows: int) -> memoryview:
+    """The rows of columns whose lists are all of one length."""
+    fields: list[tuple[str, Any, tuple[int, ...]]] = []
+    for i, column in enumerate(columns):
+        width = column.values.shape[1] if isinstance(column, Block) else int(column.lengths[0])
+        if isinstance(column, Lists):
+            fields.append((f"count{i}", column.count, ()))
+        fields.append((f"values{i}", column.values.dtype.newbyteorder("<"), (width,)))
+    record = np.empty(rows, np.dtype(fields))
+    for i, column in enumerate(columns):
+        if isinstance(column, Lists):
+            record[f"count{i}"] = column.lengths[0]
+        record[f"values{i}"] = column.values.reshape(rows, -1)
+    return record.view(np.uint8).data
+
+
+def _little(values: NDArray[Any]) -> NDArray[Any]:
+    return np.asarray(values, values.dtype.newbyteorder("<"))

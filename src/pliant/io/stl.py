@@ -17,10 +17,12 @@ from pliant.io.format import Encoded, Keeps, MeshFormat, Source
 from pliant.io.losses import as_float32, losses_of
 from pliant.io.text import Lines, Offsets, patched, plain_text, read_numbers, text_of
 from pliant.mesh import FaceLabels, PolygonMesh
+from pliant.numerics.chunks import for_chunks
 from pliant.numerics.ragged import Ragged
 
 _RECORD = np.dtype([("normal", "<f4", 3), ("points", "<f4", (3, 3)), ("attribute", "<u2")])
 _HEAD = 84
+_CHUNK = 16_384  # triangles at a time, so that what lies between stays in cache
 _TEXT = re.compile(rb"(?i)(?:\xef\xbb\xbf)?\s*solid\b[^\r\n]*[\r\n]+\s*(?:facet|endsolid)\b")
 _ORDER = re.compile(r"(?:s(?:flvvvep)*t)+")  # the words below, a letter each
 _WORDS = {
@@ -45,9 +47,11 @@ class Stl(MeshFormat):
     keeps = Keeps(shared_vertices=False, precision="float32")
 
     def sniff(self, data: bytes) -> bool:
+        """Whether the length fits the header's count, or the text begins as STL does."""
         return _fits_binary(data) or _TEXT.match(data[:4096]) is not None
 
     def read(self, source: Source) -> PolygonMesh:
+        """The mesh that an STL file holds."""
         if not _fits_binary(source.data) and source.data[:512].lower().lstrip(b"\xef\xbb\xbf \t\r\n").startswith(
             b"solid"
         ):
@@ -55,6 +59,7 @@ class Stl(MeshFormat):
         return _read_binary(source)
 
     def encode(self, mesh: PolygonMesh, path: Path) -> Encoded:
+        """The file that the mesh was read from, with other numbers; a new one if that was none or another."""
         carrier = carrier_of(mesh, self.name)
         if carrier is None:
             return _new_file(mesh, self.keeps)
@@ -143,20 +148,27 @@ def _explain_order(source: Source, lines: Lines, order: str) -> None:
 
 def _normals(corners: NDArray[np.float64]) -> NDArray[np.float64]:
     """(t, 3) unit normals of (t, 3, 3) corners; zero for triangles without area."""
-    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    size = np.sqrt(np.einsum("ij,ij->i", normals, normals))
-    normals /= np.where(size > 0, size, 1.0)[:, None]
-    return normals
+    a, b = (np.ascontiguousarray((corners[:, i] - corners[:, 0]).T) for i in (1, 2))
+    normals = np.stack([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+    size = np.sqrt((normals * normals).sum(axis=0))
+    normals /= np.where(size > 0, size, 1.0)
+    return normals.T
 
 
 def _same_binary(mesh: PolygonMesh, carrier: Carrier) -> Encoded:
-    changed = np.flatnonzero((mesh.points != carrier.mesh.points).reshape(-1, 9).any(axis=1))
+    old, new = carrier.mesh.points.reshape(-1, 9), mesh.points.reshape(-1, 9)
     rounded, notes = as_float32(mesh.points, Stl.name)
     data = np.frombuffer(carrier.data, np.uint8).copy()
     records = data[_HEAD:].view(_RECORD)
-    corners = mesh.points.reshape(-1, 3, 3)
-    records["points"][changed] = rounded.reshape(-1, 3, 3)[changed]
-    records["normal"][changed] = _normals(corners[changed])
+
+    def work(first: int, stop: int) -> None:
+        changed = first + np.flatnonzero((old[first:stop] != new[first:stop]).any(axis=1))
+        if len(changed):
+            at = slice(first, stop) if len(changed) == stop - first else changed
+            records["points"][at] = rounded.reshape(-1, 3, 3)[at]
+            records["normal"][at] = _normals(new[at].reshape(-1, 3, 3))
+
+    for_chunks(work, len(records), _CHUNK)
     return Encoded([data.data], notes=notes)
 
 
@@ -172,10 +184,15 @@ def _same_text(mesh: PolygonMesh, carrier: Carrier) -> Encoded:
 
 def _new_file(mesh: PolygonMesh, keeps: Keeps) -> Encoded:
     rounded, rounding = as_float32(mesh.points, Stl.name)
-    triangles = mesh.triangles
+    triangles = mesh.faces.flat.reshape(-1, 3) if mesh.faces.uniform == 3 else mesh.triangles
     records = np.zeros(len(triangles), _RECORD)
-    records["points"] = rounded[triangles]
-    records["normal"] = _normals(mesh.points[triangles])
+
+    def work(first: int, stop: int) -> None:
+        some = triangles[first:stop]
+        records["points"][first:stop] = rounded[some]
+        records["normal"][first:stop] = _normals(mesh.points[some])
+
+    for_chunks(work, len(triangles), _CHUNK)
     known: tuple[str, ...] = ()
     attribute = mesh.face_attributes.get("attribute")
     if attribute is not None and attribute.dtype == np.uint16:

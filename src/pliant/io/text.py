@@ -110,7 +110,7 @@ class Lines:
         return Lines(self.text, self.start[rows], self.body[rows], self.end[rows], self.key[rows])
 
     @cached_property
-    def bytes(self) -> NDArray[np.uint8]:
+    def octets(self) -> NDArray[np.uint8]:
         """The text as an array."""
         return np.frombuffer(self.text, np.uint8)
 
@@ -166,7 +166,7 @@ def read_numbers(source: Source, lines: Lines, slots: int | Offsets, *, body: bo
     counts = np.empty(len(lines), np.int64)
 
     def work(first: int, stop: int) -> None:
-        parse_numbers(lines.bytes, begin, lines.end, offsets, first, stop, values, starts, counts)
+        parse_numbers(lines.octets, begin, lines.end, offsets, first, stop, values, starts, counts)
 
     for_chunks(work, len(lines))
     for at in np.flatnonzero(np.isnan(values)):

