@@ -141,8 +141,8 @@ def _faces(source: Source, lines: Lines, vertices: int) -> tuple[Ragged, dict[st
         raise source.unreadable(cause, "correct the line", at=int(lines.start[wrong[0]]))
     length = sides.astype(np.int64)
     starts = np.concatenate([[0], np.cumsum(length)])
-    if (counts == counts[:1]).all() and (length == length[:1]).all():
-        flat = values.reshape(len(lines), -1)[:, 1 : 1 + int(length[:1].sum())].reshape(-1)
+    if len(lines) and (counts == counts[0]).all() and (length == length[0]).all():
+        flat = values.reshape(len(lines), -1)[:, 1 : 1 + int(length[0])].reshape(-1)
     else:
         flat = values[np.repeat(offsets[:-1] + 1 - starts[:-1], length) + np.arange(starts[-1])]
     bad = np.flatnonzero((flat < 0) | (flat >= vertices) | (flat % 1 != 0))

@@ -179,7 +179,7 @@ class _Reading:
             if column.offsets is None:
                 result[name] = column.values
             elif (each := Ragged(np.zeros(len(column.values), np.int32), column.offsets).uniform) is not None:
-                result[name] = column.values.reshape(-1, each)
+                result[name] = column.values.reshape(len(column.offsets) - 1, each)
             else:
                 rest.append(f"the lists {name!r} of the element {element!r}")
         return result, tuple(rest)

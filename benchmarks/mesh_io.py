@@ -1,9 +1,10 @@
 """Reading and writing meshes: pliant against trimesh, meshio and, for .vtp, VTK itself.
 
-    python benchmarks/io.py [--triangles 1000000] [--repeats 5]
+    python benchmarks/mesh_io.py [--triangles 1000000] [--repeats 5]
 
-All run in one process, interleaved; medians of wall time, files in a temporary folder, in the page cache. Every peer reads
-the same file and writes the same mesh; trimesh's cached normals are dropped before it writes. Ratios are peer / pliant: above 1, pliant is faster.
+All run in one process, interleaved; medians of wall time, files in a temporary folder, in the page cache. Every
+peer reads the same file and writes the same mesh; trimesh's cached normals are dropped before it writes, and pliant
+alone waits until the disk has its file. Ratios are peer over pliant: above 1, pliant is faster.
 """
 
 from __future__ import annotations
@@ -36,7 +37,7 @@ def grid(triangles: int) -> pl.PolygonMesh:
     x, y = np.meshgrid(np.linspace(0, 1, n), np.linspace(0, 1, n), indexing="ij")
     points = np.stack([x, y, 0.1 * np.sin(9 * x) * np.cos(7 * y)], axis=-1).reshape(-1, 3)
     corner = (np.arange(n - 1)[:, None] * n + np.arange(n - 1)).reshape(-1, 1)
-    faces = np.concatenate([corner + [0, n, n + 1], corner + [0, n + 1, 1]])
+    faces = np.concatenate([corner + np.array(step) for step in ([0, n, n + 1], [0, n + 1, 1])])
     return pl.PolygonMesh(points, faces)
 
 

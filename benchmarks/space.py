@@ -1,0 +1,226 @@
+"""Space deformers against their peers: `python benchmarks/space.py`."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+import numpy as np
+from threadpoolctl import threadpool_limits
+
+from measure import Comparison, report
+from pliant.numerics.bases import bernstein
+from pliant.space.bezier_ffd import BezierFFD
+from pliant.space.bspline_ffd import BSplineFFD
+
+RANDOM = np.random.default_rng(0)
+POINTS = RANDOM.random((1_000_000, 3))
+
+
+def bspline_comparisons() -> list[Comparison]:
+    """8 x 8 x 8 spans, a million random points: bind and evaluate, evaluate again, move one control point."""
+    lattice = BSplineFFD.around(POINTS, shape=(9, 9, 9))
+    moves = [lattice.rest + RANDOM.normal(size=lattice.rest.shape) * 0.01 for _ in range(2)]
+    bound, out = lattice.bind(POINTS), np.empty_like(POINTS)
+    vtk_cold, vtk_again = vtk_bspline(moves[0] - lattice.rest, lattice)
+    expected = lattice.moved(moves[0])(POINTS)
+    for name, result in (("VTK", vtk_cold()), ("SciPy", scipy_bspline(moves[0] - lattice.rest, lattice)())):
+        assert np.abs(result - expected).max() < 1e-12, name
+    drag, controls = bound.drag(lattice.rest), lattice.rest.copy()
+
+    def move_one() -> None:
+        controls[4, 4, 4] += 1e-4
+        drag.update(controls, changed=[(4, 4, 4)])
+
+    return [
+        Comparison(
+            "cubic B-spline, 8³ spans, 1M points: bind and evaluate",
+            {
+                "pliant": lambda: lattice.moved(moves[0]).bind(POINTS).deform(),
+                "VTK": vtk_cold,
+                "SciPy NdBSpline": scipy_bspline(moves[0] - lattice.rest, lattice),
+                "splinepy": splinepy_bspline(moves[0], lattice),
+                "a copy of the points": POINTS.copy,
+            },
+        ),
+        Comparison(
+            "the same, bound: all control points moved",
+            {"pliant": lambda: bound.deform(moves[1], out=out), "VTK": vtk_again},
+        ),
+        Comparison(
+            "the same, bound: one control point moved",
+            {"pliant, drag": move_one, "pliant, all anew": lambda: bound.deform(moves[1], out=out), "VTK": vtk_again},
+            rounds=11,
+        ),
+    ]
+
+
+def bezier_comparisons() -> list[Comparison]:
+    """One hyperpatch of degree 3, and one of degree 9."""
+    results = []
+    for size, points in ((4, POINTS), (10, POINTS[:200_000])):
+        lattice = BezierFFD.around(points, shape=(size,) * 3, outside="extend")
+        controls = lattice.rest + RANDOM.normal(size=lattice.rest.shape) * 0.01
+        gemm, peer = numpy_bezier(controls, lattice, points), splinepy_bezier(controls, points)
+        bound, out = lattice.bind(points), np.empty_like(points)
+        for result in (gemm(), peer()):
+            assert np.abs(result - bound.deform(controls)).max() < 1e-10
+        results.append(
+            Comparison(
+                f"Bézier degree {size - 1}, {len(points):,} points, bound",
+                {
+                    "pliant": lambda b=bound, c=controls, o=out: b.deform(c, out=o),
+                    "NumPy GEMM, one BLAS thread": gemm,
+                    "splinepy": peer,
+                },
+                rounds=5,
+            )
+        )
+    return results
+
+
+def vtk_bspline(displacements, lattice):
+    """vtkBSplineTransform as shipped, through vtkTransformFilter."""
+    from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+    from vtkmodules.vtkCommonCore import vtkPoints
+    from vtkmodules.vtkCommonDataModel import vtkImageData, vtkPolyData
+    from vtkmodules.vtkFiltersGeneral import vtkTransformFilter
+    from vtkmodules.vtkFiltersHybrid import vtkBSplineTransform
+
+    def build():
+        image = vtkImageData()
+        image.SetDimensions(*lattice.shape)
+        image.SetSpacing(*lattice.spacing)
+        image.SetOrigin(*lattice.origin)
+        flat = np.ascontiguousarray(displacements.transpose(2, 1, 0, 3)).reshape(-1, 3)
+        image.GetPointData().SetScalars(numpy_to_vtk(flat, deep=1))
+        transform = vtkBSplineTransform()
+        transform.SetCoefficientData(image)
+        transform.SetBorderModeToEdge()
+        points = vtkPoints()
+        points.SetData(numpy_to_vtk(POINTS))
+        data = vtkPolyData()
+        data.SetPoints(points)
+        apply = vtkTransformFilter()
+        apply.SetInputData(data)
+        apply.SetTransform(transform)
+        return image, transform, apply
+
+    def run(parts):
+        parts[2].Update()
+        return vtk_to_numpy(parts[2].GetOutput().GetPoints().GetData())
+
+    kept = build()
+
+    def again():
+        kept[0].GetPointData().GetScalars().Modified()
+        kept[0].Modified()
+        kept[1].Modified()
+        return run(kept)
+
+    return lambda: run(build()), again
+
+
+def scipy_bspline(displacements, lattice):
+    from scipy.interpolate import NdBSpline
+
+    padded = np.pad(displacements, [(2, 2)] * 3 + [(0, 0)], mode="edge")
+    spline = NdBSpline(knots(lattice), padded, 3)
+    return lambda: POINTS + spline(POINTS)
+
+
+def knots(lattice):
+    """The knots of a lattice with two more layers on each side: peers know no clamped edge."""
+    return tuple(
+        origin + spacing * (np.arange(count + 8) - 4)
+        for origin, spacing, count in zip(lattice.origin, lattice.spacing, lattice.shape, strict=True)
+    )
+
+
+def splinepy_bspline(controls, lattice):
+    import splinepy
+
+    padded = np.pad(controls, [(2, 2)] * 3 + [(0, 0)], mode="edge")
+    flat = padded.transpose(2, 1, 0, 3).reshape(-1, 3)
+    spline = splinepy.BSpline(degrees=[3] * 3, knot_vectors=[k.tolist() for k in knots(lattice)], control_points=flat)
+    return lambda: spline.evaluate(POINTS, nthreads=2)
+
+
+def splinepy_bezier(controls, points):
+    import splinepy
+
+    low, high = points.min(axis=0), points.max(axis=0)
+    flat = controls.transpose(2, 1, 0, 3).reshape(-1, 3)
+    patch = splinepy.Bezier(degrees=[n - 1 for n in controls.shape[:3]], control_points=flat)
+    return lambda: patch.evaluate((points - low) / (high - low), nthreads=2)
+
+
+def numpy_bezier(controls, lattice, points):
+    """As PyGeM does it, but contracted one axis at a time by matrix products."""
+    inverse = np.linalg.inv(lattice.edges)
+
+    def run():
+        out = np.empty_like(points)
+        a, b, c = (size - 1 for size in controls.shape[:3])
+        with threadpool_limits(1, "blas"):
+            for first in range(0, len(points), 8192):
+                t = (points[first : first + 8192] - lattice.origin) @ inverse.T
+                along = bernstein(c, t[:, 2]) @ controls.transpose(2, 0, 1, 3).reshape(c + 1, -1)
+                plane = np.einsum("nj,nijc->nic", bernstein(b, t[:, 1]), along.reshape(len(t), a + 1, b + 1, 3))
+                out[first : first + 8192] = np.einsum("ni,nic->nc", bernstein(a, t[:, 0]), plane)
+        return out
+
+    return run
+
+
+def memory_note() -> str:
+    """Peak memory of ten million points, in a process of its own."""
+    code = (
+        "import resource, numpy as np\n"
+        "from pliant.space.bspline_ffd import BSplineFFD\n"
+        "small = np.random.default_rng(0).random((1000, 3))\n"
+        "BSplineFFD.around(small, shape=(9, 9, 9)).bind(small).deform()\n"
+        "points = np.random.default_rng(0).random((10_000_000, 3))\n"
+        "points.flags.writeable = False\n"
+        "before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss\n"
+        "lattice = BSplineFFD.around(points, shape=(9, 9, 9))\n"
+        "out = lattice.moved(lattice.rest * 1.01).bind(points).deform()\n"
+        "after = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss\n"
+        "print((after - before) / 2**20 - out.nbytes / 2**30)\n"
+    )
+    result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    return f"Ten million points, bound and evaluated: {float(result.stdout):.2f} GiB beyond input and output."
+
+
+def compile_note() -> str:
+    """Time of the first use of every lattice kernel, with an empty cache."""
+    code = (
+        "import os, tempfile, time\n"
+        "os.environ['NUMBA_CACHE_DIR'] = tempfile.mkdtemp()\n"
+        "import numba, numpy as np\n"
+        "from pliant.space.bspline_ffd import BSplineFFD\n"
+        "from pliant.space.bezier_ffd import BezierFFD\n"
+        "points = np.random.default_rng(0).random((100, 3))\n"
+        "start = time.perf_counter()\n"
+        "for kind in (BSplineFFD.around(points), BezierFFD.around(points, shape=(3, 3, 3))):\n"
+        "    bound = kind.bind(points)\n"
+        "    bound.deform(), bound.vjp(None, points), kind.jacobian(points)\n"
+        "    moved = kind.rest.copy(); moved[1, 1, 1] += 1; bound.drag().update(moved)\n"
+        "print(time.perf_counter() - start)\n"
+    )
+    result = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    return (
+        f"First use of every lattice kernel with an empty cache, numba itself imported: {float(result.stdout):.1f} s."
+    )
+
+
+if __name__ == "__main__":
+    comparisons = bspline_comparisons() + bezier_comparisons()
+    print(
+        report(
+            "Space deformers",
+            comparisons,
+            ["pliant", "numpy", "numba", "vtk", "scipy", "splinepy"],
+            [compile_note(), memory_note()],
+        )
+    )

@@ -1,0 +1,140 @@
+"""Small files of every mesh format, made here, that between them use every part of the readers."""
+
+from __future__ import annotations
+
+import struct
+
+import numpy as np
+
+OBJ = b"""# a comment
+mtllib none.mtl
+o thing
+v 0 0 0
+v 1.5e0 0 0
+v 1 1 0.25
+v 0 1 -1e-3
+v .5 .5 +1.
+vt 0 0
+vt 1 0
+vt 1 1
+vn 0 0 1
+vn 0.12345678901234567 0 1
+g front back
+usemtl red
+s 1
+f 1/1/1 2/2/1 3/3/2 4/1/1
+f -5//1 -4//1 \\
+  -1//2
+usemtl blue
+s off
+f 3 4 5
+l 1 2 3
+p 1
+"""
+
+OBJ_COLORS = b"\xef\xbb\xbfv 0 0 0 1 0 0\r\nv 1 0 0 0 1 0\r\nv 0 1 0 0 0 1\r\nf 1 2 3\r\n"
+
+OFF = b"OFF # comment\n5 2 0\n\n0 0 0\n1 0 0\n1 1 0\n0 1 0\n.5 .5 1\n4 0 1 2 3\n3 0 1 4 255 0 0\n"
+
+OFF_ALL = b"""STCNOFF 3 1 0
+0 0 0 0 0 1 255 0 0 255 0 0
+1 0 0 0 0 1 0 255 0 255 1 0
+0 1 0 0 0 1 0 0 255 255 0 1
+3 0 1 2 1 0 0
+"""
+
+STL_TEXT = b"""solid two of them
+facet normal 0 0 1
+ outer loop
+  vertex 0 0 0
+  vertex 1 0 0
+  vertex 0 1 0
+ endloop
+endfacet
+facet normal 0 0 1
+ outer loop
+  vertex 1 0 0
+  vertex 1 1 0
+  vertex 0 1 0
+ endloop
+endfacet
+endsolid two of them
+"""
+
+PLY_TEXT = b"""ply
+format ascii 1.0
+comment made by hand
+element vertex 4
+property float x
+property float y
+property double z
+property float nx
+property float ny
+property float nz
+property uchar red
+property uchar green
+property uchar blue
+property float s
+property float t
+property float quality
+element face 2
+property list uchar int vertex_indices
+property list uchar float texcoord
+property int material
+element edge 1
+property int vertex1
+property int vertex2
+end_header
+0 0 0 0 0 1 255 0 0 0 0 .5
+1 0 0 0 0 1 0 255 0 1 0 .25
+1 1 0 0 0 1 0 0 255 1 1 .125
+0 1 0 0 0 1 9 9 9 0 1 1e-2
+3 0 1 2 6 0 0 1 0 1 1 7
+4 0 1 2 3 8 0 0 1 0 1 1 0 1 8
+0 3
+"""
+
+
+def stl_binary(head: bytes = b"solid but binary", count: int = 3) -> bytes:
+    """A binary STL whose triangles have attribute bytes."""
+    corners = np.arange(9.0 * count).reshape(count, 9) % 7
+    records = (struct.pack("<12fH", 0, 0, 1, *row, i) for i, row in enumerate(corners))
+    return head.ljust(80, b"\0") + struct.pack("<I", count) + b"".join(records)
+
+
+def ply_binary(order: str = "<") -> bytes:
+    """A binary PLY of either byte order with lists of different lengths, and a list between scalars."""
+    name = {"<": b"binary_little_endian", ">": b"binary_big_endian"}[order]
+    head = (
+        b"ply\nformat " + name + b" 1.0\nobj_info made here\nelement vertex 4\nproperty float x\nproperty float y\n"
+        b"property float z\nproperty list uchar short tags\nelement face 2\nproperty uchar flag\n"
+        b"property list uchar uint vertex_index\nend_header\n"
+    )
+    points = [(0, 0, 0), (1, 0, 0), (1, 1, 0.1), (0, 1, 0)]
+    body = b"".join(struct.pack(f"{order}3fB{i}h", *point, i, *range(i)) for i, point in enumerate(points))
+    body += struct.pack(f"{order}BB3I", 1, 3, 0, 1, 2) + struct.pack(f"{order}BB4I", 2, 4, 0, 1, 2, 3)
+    return head + body
+
+
+def ply_strips() -> bytes:
+    """A binary PLY whose triangles come as strips."""
+    head = (
+        b"ply\nformat binary_little_endian 1.0\nelement vertex 5\nproperty double x\nproperty double y\n"
+        b"property double z\nelement tristrips 1\nproperty list int int vertex_indices\nend_header\n"
+    )
+    strip = [0, 1, 2, 3, -1, 2, 3, 4]
+    return head + np.arange(15.0).tobytes() + struct.pack(f"<i{len(strip)}i", len(strip), *strip)
+
+
+SEEDS = {
+    "obj": OBJ,
+    "obj-colors": OBJ_COLORS,
+    "off": OFF,
+    "off-all": OFF_ALL,
+    "stl-text": STL_TEXT,
+    "stl-binary": stl_binary(),
+    "ply-text": PLY_TEXT,
+    "ply-little": ply_binary("<"),
+    "ply-big": ply_binary(">"),
+    "ply-strips": ply_strips(),
+}
