@@ -60,7 +60,7 @@ def glaze(size: int = 768) -> NDArray[np.uint8]:
     return colors
 
 
-def sway(positions: ArrayLike, *, turn: float = 1.7, lean: float = 0.13) -> Floats:
+def sway(positions: ArrayLike, *, turn: float = 1.0, lean: float = 0.15) -> Floats:
     """Where lattice positions (..., 3) go in a dance: they turn about z with height and lean aside in an S.
 
     Parameters

@@ -19,7 +19,7 @@ _NEXT = """\
 Try next:
   pliant info {ffd}
   pliant deform {mesh} --lattice 4x4x4 --move 3,3,3:60,60,40 -o {folder}/pulled.obj
-  pliant render {mesh} --ffd {ffd} --show mesh,lattice,arrows --color displacement -o {folder}/arrows.png
+  pliant render {mesh} --ffd {ffd} --show mesh,arrows --color displacement -o {folder}/arrows.png
   pliant deform {swayed} --ffd {ffd} --inverse -o {folder}/back.obj
 """
 
@@ -55,7 +55,7 @@ _MEANS = {
     "vase.obj": "a vase of quadrangles, with texture coordinates",
     "vase.mtl": "its material",
     "glaze.png": "its texture",
-    "sway.FFD": "a B-spline lattice of 5 x 5 x 8 control points",
+    "sway.FFD": "a B-spline lattice of 4 x 4 x 6 control points",
     "vase-swayed.obj": "the vase, deformed: the same polygons, texture and material",
     "before.png": "the vase and the lattice at rest",
     "after.png": "both deformed",
@@ -76,7 +76,7 @@ def _make(session: Session, mesh: Path, ffd: Path) -> PolygonMesh:
     write_bytes(texture, png_bytes(examples.glaze()))
     vase = examples.vase(texture=texture)
     write(vase, mesh)
-    lattice = BSplineFFD.around(vase, shape=(5, 5, 8), margin=0.05)
+    lattice = BSplineFFD.around(vase, shape=(4, 4, 6), margin=0.02)
     write_transform(lattice.moved(examples.sway(lattice.rest)), ffd)
     session.say(f"made {mesh} and {ffd}")
     return read(mesh)

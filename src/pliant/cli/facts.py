@@ -50,7 +50,11 @@ def of_transform(deformer: SpaceDeformer) -> dict[str, Any]:
             found[name] = getattr(deformer, name)
     if isinstance(deformer, Affine):
         found |= {"matrix": deformer.matrix.tolist(), "det_J": float(np.linalg.det(deformer.linear))}
-        return found | ({"parameters": dict(header.parameters)} if isinstance(header, AFFHeader) else {})
+        return found | (
+            {"parameters": {name: " ".join(text.split()) for name, text in header.parameters.items()}}
+            if isinstance(header, AFFHeader)
+            else {}
+        )
     rest = deformer.rest
     return found | _lattice(rest) | _strength(deformer, rest)
 

@@ -8,6 +8,8 @@ from typing import Annotated
 
 import typer
 
+_MOST_CONTROLS = 10_000_000  # 240 MB, several times
+
 
 class Placement(StrEnum):
     """Where a lattice that a file describes lies."""
@@ -57,7 +59,9 @@ OriginOption = Annotated[
 LatticeOption = Annotated[
     str | None, typer.Option("--lattice", metavar="NxNxN", help="A new lattice of control points around the mesh.")
 ]
-MarginOption = Annotated[float, typer.Option(help="Room around the mesh in --lattice, as part of its size.")]
+MarginOption = Annotated[
+    float, typer.Option(help="Room around the mesh in --lattice, as part of its size.", min=0.0, max=1e6)
+]
 MoveOption = Annotated[
     list[str] | None,
     typer.Option("--move", metavar="I,J,K:DX,DY,DZ", help="Move control point (I, J, K), counted from 0; repeatable."),
@@ -100,6 +104,8 @@ def lattice_shape(text: str) -> tuple[int, int, int]:
     if len(words) != 3 or not all(word.isdecimal() and int(word) > 0 for word in words):
         raise typer.BadParameter(f"{text!r} is no lattice, as in 4x4x6", param_hint="--lattice")
     nx, ny, nz = map(int, words)
+    if nx * ny * nz > _MOST_CONTROLS:
+        raise typer.BadParameter(f"{text!r} has more than {_MOST_CONTROLS:,} control points", param_hint="--lattice")
     return nx, ny, nz
 
 
