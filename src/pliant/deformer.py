@@ -60,10 +60,14 @@ class Deformer(ABC):
     def __call__(self, target: ArrayLike) -> Points: ...
     def __call__(self, target: Target) -> PolygonMesh | Points:
         """Deform: mesh in, mesh out; (n, 3) points in, (n, 3) points out."""
-        points = self.bind(target).deform()
+        points = self._deformed(target)
         if not isinstance(target, PolygonMesh):
             return points
         return target.with_points(points, normals=self._normals(target, points))
+
+    def _deformed(self, target: Target) -> Points:
+        """(n, 3) the deformed points, for one use: nothing need be kept."""
+        return self.bind(target).deform()
 
     def _normals(self, mesh: PolygonMesh, points: Points) -> Points | CornerValues | None:
         """The normals that the mesh stores, after the deformation; None where it stores none."""
@@ -96,10 +100,7 @@ class SpaceDeformer(Deformer):
             counted and the first is named.
         """
         images = as_points(points)
-        return invert(self._evaluate, self.jacobian, images, tolerance=tolerance, iterations=iterations)
-
-    def _evaluate(self, points: Points) -> Points:
-        return self.bind(points).deform()
+        return invert(self._deformed, self.jacobian, images, tolerance=tolerance, iterations=iterations)
 
     def _normals(self, mesh: PolygonMesh, points: Points) -> Points | CornerValues | None:
         stored = mesh.vertex_attributes.get("normals")

@@ -19,6 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pliant.errors import InvalidMesh
+from pliant.numerics.chunks import for_chunks
 from pliant.numerics.ragged import Ragged, frozen
 from pliant.numerics.triangulation import polygon_normals, triangulate
 
@@ -314,8 +315,16 @@ class PolygonMesh:
         return f"<table><caption>PolygonMesh</caption>{body}</table>"
 
 
-def as_points(target: PolygonMesh | ArrayLike) -> Points:
-    """(n, 3) finite, C-ordered, read-only positions of a mesh or of anything that reads as points.
+def as_points(target: PolygonMesh | ArrayLike, *, borrow: bool = False) -> Points:
+    """(n, 3) finite, C-ordered positions of a mesh or of anything that reads as points.
+
+    Parameters
+    ----------
+    target
+        A mesh, or points.
+    borrow
+        Whether the caller's own array will do, for a use that ends before the caller can change it; else the
+        result is read-only for good.
 
     Raises
     ------
@@ -330,7 +339,7 @@ def as_points(target: PolygonMesh | ArrayLike) -> Points:
     if points.ndim != 2 or points.shape[1] != 3:
         raise InvalidMesh(f"points have shape {points.shape}; (n, 3) is needed")
     _require_finite(points)
-    return frozen(points, np.float64)
+    return np.ascontiguousarray(points) if borrow else frozen(points, np.float64)
 
 
 def _rebuild(state: dict[str, Any]) -> PolygonMesh:
@@ -342,9 +351,11 @@ def _frozen_mapping(values: Mapping[str, NDArray[Any]]) -> Mapping[str, NDArray[
 
 
 def _require_finite(points: Points) -> None:
-    with np.errstate(over="ignore", invalid="ignore"):
-        if np.isfinite(points.sum()):  # one fast pass; an overflow is looked at more closely below
-            return
+    sums = []
+    with np.errstate(over="ignore", invalid="ignore"):  # one fast pass; an overflow is looked at more closely below
+        for_chunks(lambda start, stop: sums.append(points[start:stop].sum()), len(points))
+    if np.isfinite(sums).all():
+        return
     bad = np.flatnonzero(~np.isfinite(points).all(axis=1))
     if len(bad):
         raise InvalidMesh(

@@ -9,9 +9,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pliant.errors import InvalidControls, InvalidDeformer
+from pliant.errors import InvalidControls, InvalidDeformer, NonFiniteResult
 from pliant.mesh import PolygonMesh
 from pliant.space.affine import Affine
+from pliant.testing import check_deformer
 
 POINTS = np.random.default_rng(3).normal(size=(20, 3))
 
@@ -31,6 +32,10 @@ def test_composition_is_the_product(a, b):
 def test_inverse_undoes(a):
     assert np.allclose(a.inverse(a(POINTS)), POINTS, atol=1e-9)
     assert np.allclose((a @ a.inverted()).matrix, np.eye(4), atol=1e-9)
+
+
+def test_obeys_the_laws_of_deformers():
+    check_deformer(Affine.rotation([1, 2, 3], 0.7) @ Affine.scaling([1, 2, 0.5], origin=[1, 1, 1]), POINTS)
 
 
 def test_rest_is_the_identity_exactly():
@@ -88,6 +93,8 @@ def test_refusals_name_the_cause():
     ):
         with pytest.raises(InvalidDeformer, match="needed"):
             build()
+    with pytest.raises(NonFiniteResult, match="affine map"):
+        Affine.scaling(1e300)(np.full((1, 3), 1e300))
     with pytest.raises(InvalidControls):
         Affine().moved(np.zeros(9))
 

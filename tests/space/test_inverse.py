@@ -6,7 +6,9 @@ import numpy as np
 
 from pliant.mesh import PolygonMesh
 from pliant.space.affine import Affine
+from pliant.space.bspline_ffd import BSplineFFD
 from pliant.space.inverse import Inverse
+from pliant.testing import check_deformer
 
 POINTS = np.random.default_rng(5).normal(size=(15, 3))
 MAP = Affine.of([[1.2, 0.1, 0], [0, 0.9, 0.2], [0.1, 0, 1.1]], [1, -2, 0.5])
@@ -18,6 +20,12 @@ def test_undoes_in_both_orders():
     assert np.allclose(MAP(back(POINTS)), POINTS, atol=1e-12)
     assert np.allclose(back.inverse(POINTS), MAP(POINTS))
     assert np.allclose(Inverse(back)(POINTS), MAP(POINTS))
+
+
+def test_obeys_the_laws_of_deformers():
+    lattice = BSplineFFD.around(POINTS, shape=(4, 5, 4), margin=0.2)
+    lattice = lattice.moved(lattice.rest + 0.05 * np.random.default_rng(2).normal(size=lattice.rest.shape))
+    check_deformer(Inverse(lattice), POINTS)
 
 
 def test_rest_is_the_identity_exactly():

@@ -6,8 +6,10 @@ import numpy as np
 
 from pliant.mesh import PolygonMesh
 from pliant.space.affine import Affine
+from pliant.space.bspline_ffd import BSplineFFD
 from pliant.space.inverse import Inverse
 from pliant.space.placed import place
+from pliant.testing import check_deformer
 
 POINTS = np.random.default_rng(6).normal(size=(15, 3))
 MAP = Affine.of([[1.2, 0.1, 0], [0, 0.9, 0.2], [0.1, 0, 1.1]], [1, -2, 0.5])
@@ -27,6 +29,12 @@ def test_the_tool_moves_with_its_frame():
     still = Affine.scaling(1.5)
     there = place(still, Affine.translation([10, 0, 0]))
     assert np.allclose(there([[10, 0, 0], [11, 0, 0]]), [[10, 0, 0], [11.5, 0, 0]])
+
+
+def test_obeys_the_laws_of_deformers():
+    lattice = BSplineFFD.around(POINTS, shape=(4, 5, 4), margin=0.2)
+    lattice = lattice.moved(lattice.rest + 0.05 * np.random.default_rng(2).normal(size=lattice.rest.shape))
+    check_deformer(place(lattice, FRAME), POINTS)
 
 
 def test_rest_is_the_identity_exactly():

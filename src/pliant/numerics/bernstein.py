@@ -30,26 +30,19 @@ def evaluate(points, start, stop, frame, keep, across, down, along, lattice, bas
     of the three degrees; ``lattice`` the control values, flat, of shape (l + 1, m + 1, n + 1, 3).
     """
     xs, ys, zs = np.empty(16 * len(across)), np.empty(16 * len(down)), np.empty(16 * len(along))
-    block, moved = np.zeros(48), np.empty(48)
+    block, moved, inside = np.zeros(48), np.empty(48), np.empty(16)
     for first in range(start, stop, 16):
         count = min(16, stop - first)
         for n in range(3 * count):
             put(block, n, get(points, 3 * first + n))
-        inside0, inside1 = spread(1.0), spread(1.0)
         for half in range(2):
             x, y, z = load_triples(block, 24 * half)
-            for axis in range(3):
+            store(inside, 8 * half, spread(1.0))
+            for axis, (table, binomials) in enumerate(((xs, across), (ys, down), (zs, along))):
                 t = x * frame[axis, 0] + y * frame[axis, 1] + z * frame[axis, 2] + frame[axis, 3]
-                if axis == 0:
-                    _fill(xs, 8 * half, across, t)
-                elif axis == 1:
-                    _fill(ys, 8 * half, down, t)
-                else:
-                    _fill(zs, 8 * half, along, t)
-                if half == 0:
-                    inside0 = where_between(t, keep[0, axis], keep[1, axis], inside0, 0.0)
-                else:
-                    inside1 = where_between(t, keep[0, axis], keep[1, axis], inside1, 0.0)
+                _fill(table, 8 * half, binomials, t)
+                here = load(inside, 8 * half)
+                store(inside, 8 * half, where_between(t, keep[0, axis], keep[1, axis], here, 0.0))
         x0, y0, z0, x1, y1, z1 = spread(0.0), spread(0.0), spread(0.0), spread(0.0), spread(0.0), spread(0.0)
         at = 0
         for i in range(len(across)):
@@ -64,7 +57,8 @@ def evaluate(points, start, stop, frame, keep, across, down, along, lattice, bas
                 w0, w1 = load(xs, 16 * i) * load(ys, 16 * j), load(xs, 16 * i + 8) * load(ys, 16 * j + 8)
                 x0, y0, z0 = x0 + w0 * a0, y0 + w0 * b0, z0 + w0 * c0
                 x1, y1, z1 = x1 + w1 * a1, y1 + w1 * b1, z1 + w1 * c1
-        store_triples(moved, 0, x0 * inside0, y0 * inside0, z0 * inside0)
-        store_triples(moved, 24, x1 * inside1, y1 * inside1, z1 * inside1)
+        w0, w1 = load(inside, 0), load(inside, 8)
+        store_triples(moved, 0, x0 * w0, y0 * w0, z0 * w0)
+        store_triples(moved, 24, x1 * w1, y1 * w1, z1 * w1)
         for n in range(3 * count):
             put(out, 3 * first + n, get(base, 3 * first + n) + get(moved, n))

@@ -76,6 +76,7 @@ class CellPoints:
         self._order = np.empty(count, np.int32)
         self._rank = np.empty(count, np.int32)
         self._local = np.empty(3 * (count + 8))
+        self._local.reshape(3, -1)[:, count:] = 0.0  # lanes beyond the last point compute too
         self._starts = np.empty((-(-count // self._chunk), cells + 2), np.int64)
         flat = points.reshape(-1)
 
@@ -217,6 +218,29 @@ class CellPoints:
 
     def _each_chunk(self, work: Callable[[int, Any], None]) -> None:
         for_chunks(lambda start, _stop: work(start, self._starts[start // self._chunk]), len(self.points), self._chunk)
+
+
+def evaluate_once(grid: CellGrid, points: Floats, lattice: Floats, base: Floats, out: Floats) -> None:
+    """As :meth:`CellPoints.evaluate`, for one use: a chunk is sorted and evaluated while it is in the cache."""
+    from pliant.numerics import tricubic
+
+    cells = np.arange(grid.counts.prod())
+    flat, shape = lattice.reshape(-1), grid.shape
+
+    def work(start: int, stop: int) -> None:
+        count = stop - start
+        order, rank = np.empty(count, np.int32), np.empty(count, np.int32)
+        local, starts = np.zeros(3 * (count + 8)), np.empty(len(cells) + 2, np.int64)
+        tricubic.locate(
+            points[start:stop].reshape(-1), 0, count, grid.frame, grid.limits, grid.keep, grid.counts,
+            order, rank, local, starts,
+        )  # fmt: skip
+        tricubic.evaluate(
+            0, starts, order, rank, local, grid.counts, grid.stride, grid.basis,
+            flat, shape, cells, base[start:stop].reshape(-1), out[start:stop].reshape(-1),
+        )  # fmt: skip
+
+    for_chunks(work, len(points), max(CHUNK, 4 * len(cells)))
 
 
 def shift_points(points: NDArray[np.int32], weights: Floats, anchors: Floats, step: Floats, out: Floats) -> None:

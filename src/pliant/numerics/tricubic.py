@@ -24,20 +24,19 @@ from __future__ import annotations
 import numpy as np
 
 from pliant.numerics.compiling import inlined, kernel
-from pliant.numerics.lanes import clamp, get, load, load_triples, put, store, store_triples, total, where_between, whole
-
-
-@inlined
-def _coordinate(frame, axis, x, y, z):
-    return x * frame[axis, 0] + y * frame[axis, 1] + z * frame[axis, 2] + frame[axis, 3]
-
-
-@inlined
-def _place(frame, limits, grid, axis, x, y, z):
-    """Along one axis: the coordinate in the cell, and the cell."""
-    value = clamp(_coordinate(frame, axis, x, y, z), limits[0, axis], limits[1, axis])
-    column = clamp(whole(value), 0.0, grid[axis] - 1.0)
-    return value - column, column
+from pliant.numerics.lanes import (
+    clamp,
+    get,
+    load,
+    load_triples,
+    put,
+    spread,
+    store,
+    store_triples,
+    total,
+    where_between,
+    whole,
+)
 
 
 @kernel
@@ -51,21 +50,23 @@ def locate(points, first, stop, frame, limits, keep, grid, order, rank, local, s
     length, count = len(local) // 3, stop - first
     cell_of = np.empty(count + 8)
     q = np.empty(3 * (count + 8))
+    piece = np.empty(24)
     starts[:] = 0
     tail = np.zeros(24)  # the last eight points may be fewer: they are read from a copy
     for n in range(3 * (count // 8 * 8), 3 * count):
         put(tail, n - 3 * (count // 8 * 8), get(points, 3 * first + n))
     for n in range(0, count, 8):
         x, y, z = load_triples(points, 3 * (first + n)) if n + 8 <= count else load_triples(tail, 0)
-        u, i = _place(frame, limits, grid, 0, x, y, z)
-        v, j = _place(frame, limits, grid, 1, x, y, z)
-        w, k = _place(frame, limits, grid, 2, x, y, z)
-        cell = (i * float(grid[1]) + j) * float(grid[2]) + k
+        cell, inside = spread(0.0), spread(1.0)
         for axis in range(3):
-            value = _coordinate(frame, axis, x, y, z)
-            cell = where_between(value, keep[0, axis], keep[1, axis], cell, float(cells))
-        store(cell_of, n, cell)
-        store_triples(q, 3 * n, u, v, w)
+            value = x * frame[axis, 0] + y * frame[axis, 1] + z * frame[axis, 2] + frame[axis, 3]
+            inside = where_between(value, keep[0, axis], keep[1, axis], inside, 0.0)
+            value = clamp(value, limits[0, axis], limits[1, axis])
+            column = clamp(whole(value), 0.0, grid[axis] - 1.0)
+            cell = cell * float(grid[axis]) + column
+            store(piece, 8 * axis, value - column)
+        store(cell_of, n, where_between(inside, 1.0, 1.0, cell, float(cells)))
+        store_triples(q, 3 * n, load(piece, 0), load(piece, 8), load(piece, 16))
     for n in range(count):
         starts[int(get(cell_of, n)) + 1] += 1
     for cell in range(cells + 1):
@@ -139,8 +140,16 @@ def _values(basis, t):
 
 
 @inlined
-def _slopes(basis, t):
-    return _slope(basis, 0, t), _slope(basis, 1, t), _slope(basis, 2, t), _slope(basis, 3, t)
+def _tabulate(table, at, basis, t):
+    """The four basis functions at ``table[at]``, then their slopes."""
+    for b in range(4):
+        store(table, at + 8 * b, _horner(basis, b, t))
+        store(table, at + 32 + 8 * b, _slope(basis, b, t))
+
+
+@inlined
+def _row(table, at):
+    return load(table, at), load(table, at + 8), load(table, at + 16), load(table, at + 24)
 
 
 @kernel
@@ -150,7 +159,7 @@ def evaluate(first, starts, order, rank, local, grid, stride, basis, lattice, sh
     Where all cells are chosen, points that belong to none get their base.
     """
     length, cells = len(local) // 3, len(starts) - 2
-    moved = np.empty(3 * (starts[cells + 1] + 8))
+    moved, piece = np.empty(3 * (starts[cells + 1] + 8)), np.empty(24)
     down_x, down_y = shape[1] * shape[2] * 3, shape[2] * 3
     for cell in chosen:
         corner = _corner(cell, grid, stride, shape)
@@ -158,13 +167,9 @@ def evaluate(first, starts, order, rank, local, grid, stride, basis, lattice, sh
             x = _values(basis, load(local, at))
             y = _values(basis, load(local, length + at))
             z = _values(basis, load(local, 2 * length + at))
-            store_triples(
-                moved,
-                3 * (at - first),
-                _cube(lattice, corner, down_x, down_y, x, y, z),
-                _cube(lattice, corner + 1, down_x, down_y, x, y, z),
-                _cube(lattice, corner + 2, down_x, down_y, x, y, z),
-            )
+            for c in range(3):
+                store(piece, 8 * c, _cube(lattice, corner + c, down_x, down_y, x, y, z))
+            store_triples(moved, 3 * (at - first), load(piece, 0), load(piece, 8), load(piece, 16))
     if len(chosen) < cells:
         for cell in chosen:
             for at in range(starts[cell], starts[cell + 1]):
@@ -183,21 +188,27 @@ def evaluate(first, starts, order, rank, local, grid, stride, basis, lattice, sh
 def differentiate(first, starts, order, local, frame, grid, stride, basis, lattice, shape, linear, out):
     """out (n, 3, 3), flat = ``linear`` (3, 3) + the derivative of the tensor product with respect to position."""
     length, cells = len(local) // 3, len(starts) - 2
+    table = np.empty(192)
     scratch = np.empty(72)
     down_x, down_y = shape[1] * shape[2] * 3, shape[2] * 3
     for cell in range(cells):
         corner, stop = _corner(cell, grid, stride, shape), first + starts[cell + 1]
         for at in range(first + starts[cell], stop, 8):
-            u, v, w = load(local, at), load(local, length + at), load(local, 2 * length + at)
-            x, y, z = _values(basis, u), _values(basis, v), _values(basis, w)
-            dx, dy, dz = _slopes(basis, u), _slopes(basis, v), _slopes(basis, w)
-            for c in range(3):
-                along_x = _cube(lattice, corner + c, down_x, down_y, dx, y, z)
-                along_y = _cube(lattice, corner + c, down_x, down_y, x, dy, z)
-                along_z = _cube(lattice, corner + c, down_x, down_y, x, y, dz)
-                for a in range(3):
-                    slope = along_x * frame[0, a] + along_y * frame[1, a] + along_z * frame[2, a]
-                    store(scratch, 8 * (3 * c + a), slope + linear[c, a])
+            for axis in range(3):
+                _tabulate(table, 64 * axis, basis, load(local, axis * length + at))
+            for entry in range(9):
+                store(scratch, 8 * entry, spread(linear[entry // 3, entry % 3]))
+            for axis in range(3):
+                x, y, z = (
+                    _row(table, 32 * (axis == 0)),
+                    _row(table, 64 + 32 * (axis == 1)),
+                    _row(table, 128 + 32 * (axis == 2)),
+                )
+                for c in range(3):
+                    slope = _cube(lattice, corner + c, down_x, down_y, x, y, z)
+                    for a in range(3):
+                        place = 8 * (3 * c + a)
+                        store(scratch, place, load(scratch, place) + slope * frame[axis, a])
             for i in range(min(8, stop - at)):
                 n = 9 * get(order, at + i)
                 for entry in range(9):

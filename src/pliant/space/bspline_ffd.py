@@ -15,8 +15,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from pliant.deformer import Controls, SpaceDeformer, Target, checked_controls
 from pliant.errors import InvalidDeformer
-from pliant.mesh import PolygonMesh, as_points
-from pliant.numerics.cells import BSPLINE, CellGrid, CellPoints
+from pliant.mesh import Points, PolygonMesh, as_points
+from pliant.numerics.cells import BSPLINE, CellGrid, CellPoints, evaluate_once
 from pliant.numerics.ragged import frozen
 from pliant.space.box import box_around, checked_axes, thickened
 from pliant.space.lattice import LatticeBinding, Padding
@@ -142,11 +142,20 @@ class BSplineFFD(SpaceDeformer):
 
     def bind(self, target: Target) -> LatticeBinding:
         points = as_points(target)
-        base = points
-        if not np.array_equal(self.affine, np.eye(4)):
-            base = frozen(points @ self.affine[:3, :3].T + self.affine[:3, 3], np.float64)
-        sampled = CellPoints(self._grid, points)
+        sampled, base = CellPoints(self._grid, points), frozen(self._base(points), np.float64)
         return LatticeBinding(sampled, self._padding, self.rest, self.displacements, base)
+
+    def _deformed(self, target: Target) -> Points:
+        points = as_points(target, borrow=True)
+        out = np.empty_like(points)
+        evaluate_once(self._grid, points, self._padding.values(self.displacements), self._base(points), out)
+        return out
+
+    def _base(self, points: Points) -> Points:
+        """Where the points are while the lattice rests: the affine part."""
+        if np.array_equal(self.affine, np.eye(4)):
+            return points
+        return points @ self.affine[:3, :3].T + self.affine[:3, 3]
 
     def jacobian(self, points: ArrayLike) -> Floats:
         sampled = CellPoints(self._grid, as_points(points))
