@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import json
+import time
 
 import numpy as np
 import pytest
 
 import pliant as pl
+from pliant.cli.session import Session
 
 
 def test_applies_the_map_of_a_file(run, cube, lattice, tmp_path):
@@ -96,6 +98,15 @@ def test_the_result_in_json_is_all_there_is_on_stdout(run, cube, lattice, tmp_pa
     assert told["output"] == str(out)
     assert any("texture" in loss.lower() or "uv" in loss.lower() for loss in told["losses"])
     assert len(told["warnings"]) == len(told["losses"])
+
+
+def test_long_work_says_why(capsys):
+    session = Session()
+    with session.patience():
+        time.sleep(1.3)
+    with session.patience():
+        pass
+    assert capsys.readouterr().err.count("compiles") == 1
 
 
 def test_quiet_leaves_warnings_only(run, cube, lattice, tmp_path):

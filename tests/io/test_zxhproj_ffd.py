@@ -248,6 +248,13 @@ def test_fitting_conjugates_with_the_scaling_of_the_boxes(path):
     assert np.allclose([corners.min(axis=0), corners.max(axis=0)], [low, low + extent])
 
 
+def test_a_fitted_lattice_can_be_written_where_it_lies(path):
+    target = PolygonMesh(RNG.normal(size=(30, 3)) * [10, 20, 30] + 5)
+    fitted = read(path, ffd(OFFSETS, SPACING, OBLIQUE), placement="fit", target=target)
+    pl.write_transform(fitted, path)
+    assert np.allclose(pl.read_transform(path)(POINTS), fitted(POINTS), atol=1e-4)
+
+
 def test_fitting_a_flat_mesh_keeps_the_mean_scale_across(path):
     square = PolygonMesh(np.array([[0, 0, 7], [2, 0, 7], [2, 3, 7.0]]))
     fitted = read(path, ffd(OFFSETS), placement="fit", target=square)
@@ -305,6 +312,12 @@ def test_contradictions_are_refused_with_their_place(path, name):
     with pytest.raises(UnreadableFile, match=message) as caught:
         read(path, broken)
     assert str(path) in str(caught.value)
+
+
+def test_a_lattice_without_any_offset_is_refused(path):
+    text = ffd(np.zeros((1, 1, 1, 3))).replace("0.000000 0.000000 0.000000\t", " " * 40)
+    with pytest.raises(UnreadableFile, match="there are 0 offsets"):
+        read(path, text)
 
 
 def test_the_line_of_a_missing_offset_is_named(path):

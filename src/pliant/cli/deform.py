@@ -51,7 +51,8 @@ def deform_file(session: Session, path: Path, output: Path, choice: Choice, *, s
     mesh = read(path)
     session.say(f"read {path}: {len(mesh.points):,} points, {len(mesh.faces):,} faces")
     deformer = choice.required(mesh)
-    moved = deformer(mesh)
+    with session.patience():
+        moved = deformer(mesh)
     length = np.linalg.norm(moved.points - mesh.points, axis=1)
     largest, mean = float(length.max(initial=0.0)), float(length.mean()) if len(length) else 0.0
     session.say(f"deformed: points moved by {mean:.4g} on average, {largest:.4g} at most")

@@ -7,7 +7,9 @@ from __future__ import annotations
 
 import sys
 import warnings
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from threading import Timer
 from types import TracebackType
 from typing import Any
 
@@ -42,6 +44,18 @@ class Session:
         """A line of progress."""
         if not self._quiet:
             self._stderr.print(line, style="dim", markup=False)
+
+    @contextmanager
+    def patience(self) -> Iterator[None]:
+        """Say why, where what follows takes more than a second."""
+        reason = "still at work: the first run on a machine compiles what it needs, and keeps it"
+        timer = Timer(1.0, self.say, (reason,))
+        timer.daemon = True
+        timer.start()
+        try:
+            yield
+        finally:
+            timer.cancel()
 
     def warn(self, line: str) -> None:
         """Something that worked, but not as the user may think."""

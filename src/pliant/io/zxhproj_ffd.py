@@ -11,6 +11,7 @@ import warnings
 from collections import Counter
 from collections.abc import Mapping
 from math import prod
+from operator import itemgetter
 from pathlib import Path
 
 import numpy as np
@@ -110,7 +111,7 @@ def _offsets(block: Block, shape: Shape, dimension: int) -> tuple[Floats, list[i
     rows = block.rows()
     lengths = [len(row) for row in rows]
     if sum(lengths) not in allowed:
-        usual = Counter(filter(None, lengths)).most_common(1)[0][0]
+        usual = max(Counter(filter(None, lengths)).items(), key=itemgetter(1), default=(0, 0))[0]
         odd = next((at for at, length in enumerate(lengths) if length not in (0, usual)), len(rows) - 1)
         raise block.error(f"there are {sum(lengths):,} offsets; {lattice}", "compare this line", line=block.line + odd)
     return block.floats(rows), lengths

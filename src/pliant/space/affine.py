@@ -180,7 +180,8 @@ class AffineBinding(LinearBinding):
         """(n, 3) the mapped points."""
         result = checked_out(out, len(self._points))
         rows = self._checked(controls).reshape(3, 4)
-        result[:] = self._points @ rows[:, :3].T + rows[:, 3]
+        with np.errstate(over="ignore", invalid="ignore"):  # told below, as an error
+            result[:] = self._points @ rows[:, :3].T + rows[:, 3]
         return require_finite(result, "affine map")
 
     def jvp(self, controls: ArrayLike | None, d_controls: ArrayLike) -> Points:
