@@ -19,8 +19,9 @@ from pliant.rendering.window import import_pyvista
 
 
 def add_lattice(drawing: Any, deformer: Deformer, size: float, theme: Theme) -> Points:
-    """Draw control points with their lattice, faintly also at rest where they moved; where they are.
+    """Draw control points with their lattice; where they are.
 
+    The few that moved are marked, and drawn faintly also at rest; where most moved, marks would only be noise.
     Controls of shape (k, 3) have no lattice; parameters and coefficients are not drawn at all.
     """
     rest, controls = deformer.rest, deformer.controls
@@ -28,6 +29,8 @@ def add_lattice(drawing: Any, deformer: Deformer, size: float, theme: Theme) -> 
         return np.empty((0, 3))
     at, before = controls.reshape(-1, 3), rest.reshape(-1, 3)
     moved = np.linalg.norm(at - before, axis=1) > 1e-9 * size
+    if moved.mean() > 0.5:
+        moved[:] = False
     ball = min(0.0085 * size, 0.16 * _closest(rest))
     wire = 0.17 * ball
     if controls.ndim == 4:
@@ -64,7 +67,7 @@ def add_arrows(drawing: Any, field: Arrows, spacing: float, theme: Theme) -> Poi
         return np.empty((0, 3))
     pyvista = import_pyvista()
     kept = field.magnitude > 0.1 * longest
-    scale = np.clip(longest, 0.8 * spacing, 2.0 * spacing) / longest
+    scale = np.clip(longest, 0.8 * spacing, 1.15 * spacing) / longest
     positions, vectors = field.positions[kept], field.vectors[kept] * scale
     cloud = pyvista.PolyData(positions)
     cloud["vectors"] = vectors

@@ -43,4 +43,4 @@ def round_numbers(low: float, high: float, most: int = 6) -> NDArray[np.float64]
     power = 10.0 ** np.floor(np.log10((high - low) / most))
     step = next(power * factor for factor in (1, 2, 5, 10) if power * factor * most >= (high - low) * (1 - 1e-9))
     first, last = np.ceil(low / step - 1e-6), np.floor(high / step + 1e-6)
-    return np.asarray(np.arange(first, last + 1) * step)
+    return np.asarray(np.arange(first, last + 1) * step + 0.0)  # no negative zero

@@ -39,6 +39,7 @@ def render(
     color: str | ArrayLike | None = None,
     limits: tuple[float, float] | None = None,
     unit: str = "",
+    legend: bool = True,
     texture: Path | str | None = None,
     view: str | ArrayLike = "iso",
     up: str = "z",
@@ -67,6 +68,8 @@ def render(
         The ends of the colour bar; None = those of the values, about one for the volume ratio.
     unit
         The unit that the colour bar names.
+    legend
+        Whether there is a colour bar.
     texture
         An image to wear instead of the mesh's own.
     view
@@ -114,10 +117,10 @@ def render(
             add_edges(drawing, after, _size_of(mesh))
         around = _draw_deformer(drawing, mesh, deformer, show, theme, spacing or _size_of(mesh) / 16)
         seen = np.vstack([after.points, *around])
-        _place_camera(drawing, seen, axes, size[0] / size[1], WIDTH if paint else 0.0)
+        _place_camera(drawing, seen, axes, size[0] / size[1], WIDTH if paint and legend else 0.0)
         _light(drawing, float(np.linalg.norm(np.ptp(seen, axis=0))))
         picture = _transparent(drawing) if background == "transparent" else _shot(drawing, theme.background)
-    if paint is not None:
+    if paint is not None and legend:
         picture = with_legend(picture, paint, unit, theme)
     return picture if path is None else _saved(picture, Path(path))
 

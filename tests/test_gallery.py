@@ -1,0 +1,70 @@
+"""Every gallery script runs, and its number is right."""
+
+from __future__ import annotations
+
+import importlib.util
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from PIL import Image
+
+GALLERY = Path(__file__).parents[1] / "docs" / "gallery"
+SCRIPTS = sorted(path.stem for path in GALLERY.glob("*.py") if path.stem != "shapes")
+NUMBERS = {
+    "bezier_ffd": (0.8, 0.2),  # the least volume ratio of the vase's dance: nothing folds
+    "bspline_ffd": (0.0, 1e-8),  # the inverse brings every point back
+    "displacement_arrows": (1.0, 1e-12),  # no point outruns the layers of control points
+    "hero": (3 * 96 / 72, 1e-12),  # three panels
+    "local_support": (0.125563, 1e-5),
+    "read_write_ffd": (0.0, 1e-7),  # the digits that the file keeps
+    "smooth_patches": (0.0, 1e-6),  # no jump of the Jacobian
+    "volume_change": (1.110635, 1e-5),
+    "warped_grid": (0.4, 0.1),  # the longest displacement, in diagonals
+}
+
+
+@pytest.fixture(scope="module")
+def beside():
+    """The scripts import the shapes that lie beside them."""
+    sys.path.insert(0, str(GALLERY))
+    yield
+    sys.path.remove(str(GALLERY))
+    sys.modules.pop("shapes", None)
+
+
+def test_every_script_has_its_number():
+    assert sorted(NUMBERS) == SCRIPTS
+
+
+@pytest.mark.parametrize("name", SCRIPTS)
+def test_a_script_draws_its_picture_and_returns_its_number(name, tmp_path, beside):
+    path = GALLERY / f"{name}.py"
+    spec = importlib.util.spec_from_file_location(f"gallery_{name}", path)
+    script = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(script)
+    expected, tolerance = NUMBERS[name]
+    assert script.main(tmp_path, size=(96, 72)) == pytest.approx(expected, abs=tolerance)
+    with Image.open(tmp_path / f"{name}.png") as picture:
+        assert picture.height == 72
+        assert np.ptp(np.asarray(picture.convert("L"))) > 60  # there is something in it
+
+
+@pytest.mark.parametrize("name", SCRIPTS)
+def test_a_script_is_short(name):
+    assert len((GALLERY / f"{name}.py").read_text().splitlines()) <= 42
+
+
+def test_knots_and_shells_are_what_they_are_called(beside):
+    from shapes import shell, trefoil
+
+    import pliant as pl
+
+    knot = trefoil(along=600, around=24, radius=0.3)
+    assert knot.edge_use == (0, 0)
+    assert len(knot.points) - len(knot.edges) + len(knot.faces) == 0  # a torus, however it is knotted
+    center = knot.points.reshape(600, 24, 3).mean(axis=1)
+    length = np.linalg.norm(np.diff(center, axis=0, append=center[:1]), axis=1).sum()
+    assert abs(pl.volume(knot)) == pytest.approx(12 * np.sin(np.pi / 12) * 0.3**2 * length, rel=1e-2)  # Pappus
+    assert shell().edge_use == (2 * 56, 0)
