@@ -1,7 +1,7 @@
 """How space is warped: a regular grid, before and after.
 
 The oldest picture of a deformation: the lines of a regular grid, carried along. They are divided as finely as their
-bends ask for, and can be saved for other programs.
+bends ask for, and can be saved as VTK polydata for other programs.
 """
 
 from pathlib import Path
@@ -19,5 +19,5 @@ def main(out: Path, size: tuple[int, int] = (1200, 900)) -> float:
         vase, dancing, out / "warped_grid.png", show=("mesh", "grid"), color="z", view=(1.0, -0.9, 0.5), size=size
     )
     grid = pl.field_grid(dancing, vase.bounds, spacing=vase.diagonal / 10)
-    grid.save(out / "grid.ply")
+    grid.save(out / "grid.vtp")
     return float(grid.magnitude.max() / vase.diagonal)

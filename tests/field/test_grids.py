@@ -13,6 +13,7 @@ from pliant.errors import InvalidParameter, NotDifferentiable
 from pliant.field.grids import field_grid
 from pliant.field.measures import principal_strains, volume_ratio
 from pliant.field.vectors import arrows
+from pliant.io.meshes import read
 from pliant.mesh import as_points
 
 
@@ -174,3 +175,14 @@ def test_too_many_arrows_are_refused():
 def test_a_deformer_of_a_surface_has_no_volume_ratio():
     with pytest.raises(NotDifferentiable, match="object is no map"):
         volume_ratio(object(), [[0.0, 0, 0]])
+
+
+def test_a_saved_grid_is_read_back_with_its_lines_and_displacements(tmp_path):
+    grid = field_grid(Screw(rate=0.4), BOX, 1.0)
+    report = grid.save(tmp_path / "grid.vtp")
+    again = read(tmp_path / "grid.vtp")
+    np.testing.assert_array_equal(again.points, grid.points)
+    np.testing.assert_array_equal(again.lines.flat, grid.lines.flat)
+    np.testing.assert_array_equal(again.lines.offsets, grid.lines.offsets)
+    np.testing.assert_array_equal(again.vertex_attributes["displacement"], grid.displacement)
+    assert report.losses == ()
