@@ -18,84 +18,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pliant.attributes import CornerValues as CornerValues
+from pliant.attributes import FaceLabels as FaceLabels
+from pliant.attributes import Material as Material
 from pliant.errors import InvalidMesh
+from pliant.numerics.adjacency import edge_use, neighbors, unique_edges
 from pliant.numerics.chunks import for_chunks
 from pliant.numerics.ragged import Ragged, frozen
 from pliant.numerics.triangulation import polygon_normals, triangulate
 
 Points = NDArray[np.float64]
-
-
-@dataclass(frozen=True, eq=False)
-class CornerValues:
-    """Values kept per corner of a face, shared through a pool as in Wavefront OBJ.
-
-    Parameters
-    ----------
-    values
-        (k, d) the pool.
-    indices
-        (c,) which value each corner has, in the order of ``mesh.faces.flat``; -1 where a corner has none.
-    """
-
-    values: Points
-    indices: NDArray[np.int32]
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "values", frozen(self.values, np.float64))
-        object.__setattr__(self, "indices", frozen(self.indices, np.int32))
-        if self.values.ndim != 2:
-            raise InvalidMesh(f"corner values have shape {self.values.shape}; one row a value is needed")
-        if self.indices.size and not -1 <= self.indices.min() <= self.indices.max() < len(self.values):
-            raise InvalidMesh(f"corners use value {self.indices.max()}; there are {len(self.values)}")
-
-    @property
-    def per_corner(self) -> Points:
-        """(c, d) the value at each corner; NaN where there is none."""
-        padded = np.vstack([self.values, np.full((1, self.values.shape[1]), np.nan)])
-        return padded[self.indices]
-
-
-@dataclass(frozen=True, eq=False)
-class FaceLabels:
-    """A partition of the faces by name: groups, objects or materials.
-
-    Parameters
-    ----------
-    names
-        The names that occur.
-    indices
-        (f,) which name each face has; -1 where it has none.
-    """
-
-    names: tuple[str, ...]
-    indices: NDArray[np.int32]
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "names", tuple(self.names))
-        object.__setattr__(self, "indices", frozen(self.indices, np.int32))
-        if self.indices.size and not -1 <= self.indices.min() <= self.indices.max() < len(self.names):
-            raise InvalidMesh(f"faces use label {self.indices.max()}; there are {len(self.names)}")
-
-    def faces(self, name: str) -> NDArray[np.int64]:
-        """The faces that carry a name."""
-        if name not in self.names:
-            raise KeyError(f"no label {name!r}; there are: {', '.join(self.names)}")
-        return np.flatnonzero(self.indices == self.names.index(name))
-
-
-@dataclass(frozen=True)
-class Material:
-    """What a material library says of one material, as far as pliant draws it.
-
-    ``color`` is a diffuse RGB triple in [0, 1]; ``texture`` the image of the diffuse colour; ``properties`` holds
-    every line of the library as it stood.
-    """
-
-    name: str
-    color: tuple[float, float, float] = (0.8, 0.8, 0.8)
-    texture: Path | None = None
-    properties: tuple[tuple[str, str], ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -258,33 +190,17 @@ class PolygonMesh:
     @cached_property
     def edges(self) -> NDArray[np.int32]:
         """(e, 2) each edge of a polygon once, the lower vertex first, sorted."""
-        both = np.sort(self._half_edges, axis=1)
-        return np.unique(both[both[:, 0] != both[:, 1]], axis=0)
+        return unique_edges(self.faces)
 
     @cached_property
     def neighbors(self) -> Ragged:
         """(n,) for each vertex the sorted vertices that it shares an edge with."""
-        both = np.vstack([self.edges, self.edges[:, ::-1]])
-        both = both[np.lexsort((both[:, 1], both[:, 0]))]
-        counts = np.bincount(both[:, 0], minlength=len(self.points))
-        return Ragged(both[:, 1], np.concatenate([[0], np.cumsum(counts)]))
-
-    @property
-    def _half_edges(self) -> NDArray[np.int32]:
-        flat, offsets = self.faces.flat, self.faces.offsets
-        following = np.roll(flat, -1)
-        filled = self.faces.lengths > 0
-        following[offsets[1:][filled] - 1] = flat[offsets[:-1][filled]]
-        return np.stack([flat, following], axis=1)
+        return neighbors(self.edges, len(self.points))
 
     @cached_property
     def edge_use(self) -> tuple[int, int]:
         """How many edges bound one face only, and how many bound three or more (or two that disagree)."""
-        half = self._half_edges[self._half_edges[:, 0] != self._half_edges[:, 1]]
-        _, inverse, count = np.unique(np.sort(half, axis=1), axis=0, return_inverse=True, return_counts=True)
-        forward = np.bincount(inverse.reshape(-1), weights=half[:, 0] < half[:, 1], minlength=len(count))
-        wrong = (count > 2) | ((count == 2) & (forward != 1))
-        return int((count == 1).sum()), int(wrong.sum())
+        return edge_use(self.faces)
 
     @cached_property
     def vertex_normals(self) -> Points:
