@@ -9,6 +9,7 @@ from __future__ import annotations
 import ast
 import importlib
 import os
+import re
 import sys
 import tomllib
 from pathlib import Path
@@ -71,6 +72,11 @@ def on_page_markdown(markdown: str, **_: Any) -> str:
         if marker in markdown:
             markdown = markdown.replace(marker, table())
     return markdown
+
+
+def on_page_content(html: str, **_: Any) -> str:
+    """Docstrings say :class:`Name` to their readers in the code; here it is the name alone."""
+    return re.sub(r":(?:class|func|meth|attr|mod):(<code>)~?", r"\1", html)
 
 
 def scripts() -> list[Path]:
@@ -202,7 +208,7 @@ def first_sentence(room: str) -> str:
     place = ROOT / "src" / "pliant" / room
     source = place / "__init__.py" if place.is_dir() else place.with_suffix(".py")
     text = ast.get_docstring(ast.parse(source.read_text(encoding="utf-8"))) if source.exists() else ""
-    return (text or "").split("\n\n")[0].replace("\n", " ")
+    return re.sub(r":\w+:`~?([^`]*)`", r"`\1`", (text or "").split("\n\n")[0].replace("\n", " "))
 
 
 def cell(value: Any) -> str:

@@ -171,6 +171,18 @@ def test_points_and_lines_are_drawn_without_faces():
         assert np.ptp(columns) == pytest.approx(np.ptp(rows), abs=3)
 
 
+@pytest.mark.parametrize(("scale", "shift"), [(1e-6, 0.0), (1e12, 1e13), (1.0, -1e5)])
+def test_scale_and_place_do_not_matter(scale, shift):
+    alpha = render(globe().with_points(scale * globe().points + shift), size=SIZE, background="transparent")[..., 3]
+    assert alpha.sum() / 255 == pytest.approx(np.pi * (0.43 * SIZE[1]) ** 2, rel=0.03)
+
+
+def test_one_point_is_seen_in_the_middle():
+    alpha = render(PolygonMesh([[1.0, 2.0, 3.0]]), size=SIZE, background="transparent")[..., 3]
+    rows, columns = np.nonzero(alpha > 128)
+    assert (rows.mean(), columns.mean()) == pytest.approx((SIZE[1] / 2, SIZE[0] / 2), abs=1.5)
+
+
 @pytest.mark.parametrize(
     ("options", "error", "words"),
     [
@@ -185,6 +197,7 @@ def test_points_and_lines_are_drawn_without_faces():
         ({"up": "x"}, InvalidParameter, "'y' or 'z'"),
         ({"background": "pink"}, InvalidParameter, "'pink'"),
         ({"size": (0, 10)}, InvalidParameter, "pixels"),
+        ({"spacing": 0.0}, InvalidParameter, "positive"),
         ({"path": "a.obj"}, UnsupportedFormat, r"\.png"),
         ({"path": "a.jpg", "background": "transparent"}, UnsupportedFormat, "transparency"),
     ],

@@ -81,11 +81,12 @@ def frame(points: Floats, axes: Floats, aspect: float, *, margin: float = 0.07, 
     seen = points @ axes.T
     tall = np.tan(ANGLE / 2) * (1 - 2 * margin)
     wide = np.tan(ANGLE / 2) * aspect * (1 - 2 * margin - right)
+    nearest = 1e-9 * float(np.ptp(seen, axis=0).max()) or 4.0  # one point is looked at from anywhere
     middle = (seen.min(axis=0) + seen.max(axis=0)) / 2
     distance = 1.0
     for _ in range(8):  # the middle of the picture depends on the distance and the other way round; this settles fast
         x, y, depth = (seen - middle).T
-        distance = float(max((np.abs(x) / wide + depth).max(), (np.abs(y) / tall + depth).max(), 1e-12))
+        distance = float(max((np.abs(x) / wide + depth).max(), (np.abs(y) / tall + depth).max(), nearest))
         for axis, offset in enumerate((x, y)):
             angle = offset / (distance - np.minimum(depth, 0.999 * distance))
             middle[axis] += distance * (angle.min() + angle.max()) / 4

@@ -90,5 +90,5 @@ def _closest(rest: NDArray[np.float64]) -> float:
     """About how far neighbouring control points are apart."""
     if rest.ndim == 4:
         steps = [np.linalg.norm(np.diff(rest, axis=axis), axis=-1) for axis in range(3)]
-        return min((float(step.min()) for step in steps if step.size), default=np.inf)
+        return min((float(np.median(step[step > 0])) for step in steps if (step > 0).any()), default=np.inf)
     return float(np.linalg.norm(np.ptp(rest, axis=0)) / len(rest) ** (1 / 3)) or np.inf

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pliant.deformer import Deformer, SpaceDeformer
 from pliant.errors import InvalidMesh, InvalidParameter, UnsupportedFormat
-from pliant.field.grids import field_grid
+from pliant.field.grids import checked_spacing, field_grid
 from pliant.field.vectors import arrows
 from pliant.io.files import replacing
 from pliant.mesh import Points, PolygonMesh
@@ -101,6 +101,7 @@ def render(
         PyVista, or a driver to draw with, is not installed.
     """
     _check(mesh, show, size, background, path)
+    apart = _size_of(mesh) / 16 if spacing is None else float(checked_spacing(spacing).min())
     axes, theme = view_axes(view, up), THEMES[background]
     after = mesh if deformer is None else deformer(mesh)
     paint = None
@@ -115,10 +116,10 @@ def render(
             add_bare(drawing, after, paint, _size_of(mesh))
         if "edges" in show:
             add_edges(drawing, after, _size_of(mesh))
-        around = _draw_deformer(drawing, mesh, deformer, show, theme, spacing or _size_of(mesh) / 16)
+        around = _draw_deformer(drawing, mesh, deformer, show, theme, apart)
         seen = np.vstack([after.points, *around])
         _place_camera(drawing, seen, axes, size[0] / size[1], WIDTH if paint and legend else 0.0)
-        _light(drawing, float(np.linalg.norm(np.ptp(seen, axis=0))))
+        _light(drawing, float(np.linalg.norm(np.ptp(seen, axis=0))) or 1.0)
         picture = _transparent(drawing) if background == "transparent" else _shot(drawing, theme.background)
     if paint is not None and legend:
         picture = with_legend(picture, paint, unit, theme)
@@ -211,8 +212,8 @@ def _check(
         raise InvalidParameter(f"nothing to show is called {min(shown - set(SHOWN))!r}; there are: {', '.join(SHOWN)}")
     if background not in THEMES:
         raise InvalidParameter(f"no background is called {background!r}; there are: {', '.join(THEMES)}")
-    if len(size) != 2 or not all(16 <= side <= 8192 for side in size):
-        raise InvalidParameter(f"a picture is 16 to 8192 pixels wide and high; given: {size}")
+    if len(size) != 2 or not all(16 <= side <= 4096 for side in size):
+        raise InvalidParameter(f"a picture is 16 to 4096 pixels wide and high; given: {size}")
     if path is not None and Path(path).suffix.lower() not in FORMATS:
         raise UnsupportedFormat(f"{path}: pictures are written as {', '.join(FORMATS)}")
     if path is not None and background == "transparent" and Path(path).suffix.lower() in {".jpg", ".jpeg"}:
