@@ -68,7 +68,7 @@ class Stl(MeshFormat):
 
 def _fits_binary(data: bytes) -> bool:
     """Whether the length is that of as many triangles as the header announces, whatever it begins with."""
-    return len(data) > _HEAD and len(data) == _HEAD + _RECORD.itemsize * int.from_bytes(data[80:84], "little")
+    return len(data) >= _HEAD and len(data) == _HEAD + _RECORD.itemsize * int.from_bytes(data[80:84], "little")
 
 
 def _read_binary(source: Source) -> PolygonMesh:
@@ -76,7 +76,7 @@ def _read_binary(source: Source) -> PolygonMesh:
     if not _fits_binary(data):
         count = int.from_bytes(data[80:84], "little")
         cause = f"{count:,} triangles need {_HEAD + _RECORD.itemsize * count:,} bytes; the file has {len(data):,}"
-        cause = cause if len(data) > _HEAD else f"an STL file has more than {_HEAD} bytes; this one {len(data)}"
+        cause = cause if len(data) >= _HEAD else f"an STL file has at least {_HEAD} bytes; this one {len(data)}"
         raise source.unreadable(cause, "the file is cut off or is no STL: export it again", at=80, text=False)
     records = np.frombuffer(data, _RECORD, offset=_HEAD)
     points = records["points"].reshape(-1, 3).astype(np.float64)
@@ -138,7 +138,7 @@ def _after(facets: Lines, word: bytes) -> Lines:
 
 def _explain_order(source: Source, lines: Lines, order: str) -> None:
     """Say where the statements leave the order that triangles have."""
-    good = re.match(r"(?:s(?:flvvvep)*t)*(?:s(?:flvvvep)*)?(?:fl?v{0,3}e?)?", order)
+    good = re.match(r"(?:s(?:flvvvep)*t)*(?:s(?:flvvvep)*)?(?:f(?:l(?:vvve|v{0,3}))?)?", order)
     at = good.end() if good else 0
     cause = "the file ends within a solid" if at == len(order) else "a statement is out of order"
     place = len(source.data) if at == len(order) else int(lines.start[at])
