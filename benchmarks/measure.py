@@ -20,6 +20,7 @@ class Comparison:
     task: str
     candidates: dict[str, Callable[[], object]]
     rounds: int = 7
+    repeat: int = 1  # consecutive calls in a round, as in an interaction
     seconds: dict[str, list[float]] = field(default_factory=dict)
 
     def run(self) -> Comparison:
@@ -29,8 +30,9 @@ class Comparison:
         for _ in range(self.rounds):
             for name, work in self.candidates.items():
                 start = time.perf_counter()
-                work()
-                self.seconds[name].append(time.perf_counter() - start)
+                for _ in range(self.repeat):
+                    work()
+                self.seconds[name].append((time.perf_counter() - start) / self.repeat)
         return self
 
     def rows(self) -> list[str]:

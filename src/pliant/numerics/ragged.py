@@ -10,6 +10,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pliant.numerics.chunks import for_chunks
+
 Indices = NDArray[np.int32]
 
 
@@ -20,8 +22,18 @@ def frozen(array: ArrayLike, dtype: Any) -> NDArray[Any]:
     while isinstance(base, np.ndarray) and not base.flags.writeable and base.base is not None:
         base = base.base  # a read-only view of somebody's writable array is still theirs to change
     safe = isinstance(base, np.ndarray) and not base.flags.writeable and given.flags.c_contiguous
-    result = given if safe else np.array(given, dtype, order="C")
+    result = given if safe else _copied(given)
     result.flags.writeable = False
+    return result
+
+
+def _copied(array: NDArray[Any]) -> NDArray[Any]:
+    """A C-ordered copy; large ones by all processors, since fresh memory is slow to touch."""
+    result = np.empty(array.shape, array.dtype)
+    if array.ndim:
+        for_chunks(lambda start, stop: np.copyto(result[start:stop], array[start:stop]), len(array))
+    else:
+        result[()] = array
     return result
 
 
