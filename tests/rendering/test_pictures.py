@@ -221,9 +221,9 @@ def test_without_pyvista_the_extra_is_named(monkeypatch):
         render(square())
 
 
-@pytest.mark.skipif(not sys.platform.startswith("linux"), reason="OSMesa is VTK's last resort on Linux only")
 def test_without_a_driver_the_packages_are_named(monkeypatch):
-    monkeypatch.setenv(window.WINDOW, "vtkOSOpenGLRenderWindow")
+    last_resort = type("Window", (), {"GetClassName": lambda self: "vtkOSOpenGLRenderWindow"})
+    monkeypatch.setattr("vtkmodules.vtkRenderingCore.vtkRenderWindow", last_resort)
     monkeypatch.setattr(window, "SOFTWARE_LIBRARIES", ("libnothing.so",))
     with pytest.raises(NoGraphics, match="libegl1 libgl1-mesa-dri"):
         render(square())
