@@ -28,8 +28,10 @@ def frames(draw):
 @settings(deadline=None, max_examples=100)
 @given(frames())
 def test_axes_survive_the_quaternion(axes):
-    # b, c, d determine a = sqrt(1 - ...) to half the digits only
-    assert np.abs(axes_of(*quaternion_of(axes)) - axes).max() < 3e-7
+    qfac, bcd = quaternion_of(axes)
+    # b, c, d determine a = sqrt(1 - ...) to half the digits only, and NIfTI takes a for 0 where a^2 < 1e-7
+    allowed = 2.1e-7**0.5 * 2 if 1 - bcd @ bcd < 2e-7 else 3e-7
+    assert np.abs(axes_of(qfac, bcd) - axes).max() < allowed
 
 
 @settings(deadline=None, max_examples=60)
