@@ -14,11 +14,11 @@ Map = Callable[[Floats], Floats]
 
 
 def invert(f: Map, jacobian: Map, images: Floats, *, tolerance: float, iterations: int) -> Floats:
-    """Solve f(x) = y for each row of ``images`` by damped Newton steps, after a few of fixed-point iteration.
+    """Solve f(x) = y for each row of ``images``: fixed-point iteration, Newton's method, then continuation.
 
     Fixed-point iteration, x <- x + y - f(x), contracts wherever the displacement's derivative is below one and
-    needs no Jacobian; Newton's method then finishes quadratically. A Newton step that makes the residual larger
-    is halved.
+    needs no Jacobian; damped Newton steps then finish quadratically. Points that Newton's method fails on are
+    followed from the identity: (1 - t) x + t f(x) = y is solved for growing t, each from the last.
 
     Parameters
     ----------
@@ -40,24 +40,59 @@ def invert(f: Map, jacobian: Map, images: Floats, *, tolerance: float, iteration
     if not len(x):
         return x
     scale = float(np.linalg.norm(images.max(axis=0) - images.min(axis=0))) or 1.0
+    _iterate_fixed_point(f, images, x)
+    failed, error = _newton(f, jacobian, images, x, tolerance * scale, iterations)
+    if len(failed):
+        followed = _follow(f, jacobian, images[failed], tolerance * scale, iterations)
+        left = np.linalg.norm(images[failed] - f(followed), axis=1)
+        better = left < error[failed]
+        x[failed[better]], error[failed[better]] = followed[better], left[better]
+        failed = failed[~(error[failed] <= tolerance * scale)]
+    folded = _folded(jacobian, x)
+    if len(failed) or len(folded):
+        raise NotConverged(_explain(images, failed, folded, error))
+    return x
+
+
+def _iterate_fixed_point(f: Map, images: Floats, x: Floats) -> None:
+    residual = images - f(x)
     for _ in range(3):
-        residual = images - f(x)
-        step_is_good = np.linalg.norm(images - f(x + residual), axis=1) < np.linalg.norm(residual, axis=1)
-        x[step_is_good] += residual[step_is_good]
-        if not step_is_good.any():
-            break
+        moved = x + residual
+        left = images - f(moved)
+        good = np.linalg.norm(left, axis=1) < np.linalg.norm(residual, axis=1)
+        x[good], residual[good] = moved[good], left[good]
+        if not good.any():
+            return
+
+
+def _newton(
+    f: Map, jacobian: Map, images: Floats, x: Floats, accepted: float, iterations: int
+) -> tuple[NDArray[np.int64], Floats]:
+    """Improve ``x`` in place; the rows that did not converge, and all residuals' lengths."""
     residual = images - f(x)
     error = np.linalg.norm(residual, axis=1)
-    active = np.flatnonzero(~(error <= tolerance * scale))
+    active = np.flatnonzero(~(error <= accepted))
     for _ in range(iterations):
         if not len(active):
             break
-        step = _solve(jacobian(x[active]), residual[active])
-        _advance(f, images, x, residual, error, active, step)
-        active = active[~(error[active] <= tolerance * scale)]
-    folded = _folded(jacobian, x)
-    if len(active) or len(folded):
-        raise NotConverged(_explain(images, active, folded, error))
+        before = error[active]
+        _advance(f, images, x, residual, error, active, _solve(jacobian(x[active]), residual[active]))
+        active = active[~(error[active] <= accepted) & (error[active] < before)]  # one that does not move is lost
+    return np.flatnonzero(~(error <= accepted)), error
+
+
+def _follow(f: Map, jacobian: Map, images: Floats, accepted: float, iterations: int) -> Floats:
+    """Pre-images along the homotopy from the identity to f."""
+    x = images.copy()
+    for t in np.linspace(0, 1, 17)[1:]:
+
+        def part(p: Floats, t: float = t) -> Floats:
+            return (1 - t) * p + t * f(p)
+
+        def slope(p: Floats, t: float = t) -> Floats:
+            return (1 - t) * np.eye(3) + t * jacobian(p)
+
+        _newton(part, slope, images, x, accepted, iterations)
     return x
 
 

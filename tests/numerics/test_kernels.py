@@ -101,3 +101,22 @@ def test_newton_converges_quadratically(random):
     found = invert(bend, jacobian, bend(x), tolerance=1e-14, iterations=20)
     assert np.abs(found - x).max() < 1e-13
     assert len(calls) < 20
+
+
+def test_a_strong_turn_is_followed_from_the_identity(random):
+    """A vortex of 170 degrees at its heart, on which Newton's method from the image fails for some points."""
+
+    def angle(p):
+        return 3.0 * np.exp(-(p[:, 0] ** 2 + p[:, 1] ** 2) / 0.3)
+
+    def turn(p):
+        c, s = np.cos(angle(p)), np.sin(angle(p))
+        return np.column_stack([c * p[:, 0] - s * p[:, 1], s * p[:, 0] + c * p[:, 1], p[:, 2]])
+
+    def jacobian(p):
+        h = 1e-6
+        return np.stack([(turn(p + h * e) - turn(p - h * e)) / (2 * h) for e in np.eye(3)], axis=-1)
+
+    x = random.normal(size=(500, 3)) * 0.6
+    assert np.abs(turn(invert(turn, jacobian, turn(x), tolerance=1e-11, iterations=50)) - turn(x)).max() < 1e-9
+    assert np.abs(invert(turn, jacobian, turn(x), tolerance=1e-11, iterations=50) - x).max() < 1e-8
