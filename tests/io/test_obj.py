@@ -195,3 +195,20 @@ def test_what_is_wrong_is_named_with_its_line(text, line, cause):
 def test_a_statement_that_obj_does_not_have_is_a_warning():
     with pytest.warns(PliantWarning, match="'vv' in line 2"):
         assert len(read(b"v 0 0 0\nvv 1 2 3\n").points) == 1
+
+
+def test_a_deformed_mesh_keeps_its_file_but_for_positions_and_normals(cube, tmp_path):
+    mesh = pl.read(cube)
+    lattice = pl.BezierFFD.around(mesh, shape=(3, 3, 3))
+    controls = lattice.rest.copy()
+    controls[1, 1, 2] += [0.3, -0.2, 0.4]
+    bent = lattice.moved(controls)(mesh)
+    pl.write(bent, tmp_path / "bent.obj", strict=True)
+    again = pl.read(tmp_path / "bent.obj")
+    assert np.array_equal(again.points, bent.points)
+    assert np.array_equal(again.normals.per_corner, bent.normals.per_corner, equal_nan=True)
+    kept = [line for line in CUBE.splitlines() if not line.startswith((b"v ", b"vn", b"f"))]
+    now = [
+        line for line in (tmp_path / "bent.obj").read_bytes().splitlines() if not line.startswith((b"v ", b"vn", b"f"))
+    ]
+    assert now == kept

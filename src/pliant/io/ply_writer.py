@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any, Literal
 
 import numpy as np
@@ -17,6 +16,7 @@ from pliant.io.format import Encoded, Keeps
 from pliant.io.losses import color_rounding, losses_of, per_vertex
 from pliant.io.ply_body import Column
 from pliant.io.ply_layout import NAMES
+from pliant.io.ply_packing import Block, Lists, packed
 from pliant.io.text import bytes_of, patched
 from pliant.mesh import PolygonMesh
 from pliant.numerics.ragged import Ragged
@@ -36,46 +36,71 @@ class Layout:
 def same_file(mesh: PolygonMesh, carrier: Carrier) -> Encoded:
     """The file that the mesh was read from with its positions and normals exchanged, in the types that they had."""
     layout: Layout = carrier.layout
-    columns = [*layout.points, *layout.normals]
-    tables = [(carrier.mesh.points, mesh.points)]
+    tables = [(layout.points, carrier.mesh.points, mesh.points)]
     if layout.normals:
-        tables.append((carrier.mesh.vertex_attributes["normals"], mesh.vertex_attributes["normals"]))
-    before = [old[:, axis] for old, _ in tables for axis in range(3)]
-    after = [new[:, axis] for _, new in tables for axis in range(3)]
+        new = np.asarray(mesh.vertex_attributes["normals"], np.float64)
+        tables.append((layout.normals, carrier.mesh.vertex_attributes["normals"], new))
     if not layout.order:
-        starts = np.stack([np.asarray(column.at) for column in columns], axis=1).ravel()
-        return Encoded([patched(carrier.data, starts, np.stack(before, 1).ravel(), np.stack(after, 1).ravel())])
+        starts = np.concatenate([np.asarray(column.at) for columns, _, _ in tables for column in columns])
+        before = np.concatenate([old.T.ravel() for _, old, _ in tables])
+        after = np.concatenate([new.T.ravel() for _, _, new in tables])
+        return Encoded([patched(carrier.data, starts, before, after)])
     data = np.frombuffer(carrier.data, np.uint8).copy()
-    error = 0.0
-    for i, (column, old, new) in enumerate(zip(columns, before, after, strict=True)):
-        wrong = _put(data, column, layout.order, old, np.asarray(new, np.float64))
-        error = max(error, wrong) if i < 3 else error
-    notes = (f"coordinates are rounded to the file's own type: by up to {error:.2g}",) if error else ()
+    errors = [_put(data, *table, layout.order) for table in tables]
+    notes = (f"coordinates are rounded to the file's own type: by up to {errors[0]:.2g}",) if errors[0] else ()
     return Encoded([data.data], notes=notes)
 
 
 def _put(
-    data: NDArray[np.uint8], column: Column, order: Literal["<", ">"], old: NDArray[Any], new: NDArray[np.float64]
+    data: NDArray[np.uint8],
+    columns: tuple[Column, ...],
+    old: NDArray[np.float64],
+    new: NDArray[np.float64],
+    order: Literal["<", ">"],
 ) -> float:
-    """Put the values that differ where they stand; returns the largest rounding error."""
-    changed = new != old
+    """Put the (n, 3) values that differ where they stand; returns the largest rounding error."""
+    changed = (new != old) & ~(np.isnan(new) & np.isnan(old))
     if not changed.any():
         return 0.0
-    kind = column.values.dtype
+    where = True if changed.all() else changed
+    beside = _side_by_side(columns)
+    if beside is not None:
+        typed, error = _typed(new, columns[0].values.dtype, where)
+        first, step = beside
+        stored = typed.dtype.newbyteorder(order)
+        np.copyto(np.ndarray(new.shape, stored, data, first, (step, stored.itemsize)), typed, where=where)
+        return error
+    errors = [0.0]
+    for axis, column in enumerate(columns):
+        rows = np.flatnonzero(changed[:, axis])
+        typed, error = _typed(new[rows, axis], column.values.dtype, True)
+        width = typed.itemsize
+        raw = typed.astype(typed.dtype.newbyteorder(order)).view(np.uint8).reshape(-1, width)
+        data[np.asarray(column.at)[rows, None] + np.arange(width)] = raw
+        errors.append(error)
+    return max(errors)
+
+
+def _side_by_side(columns: tuple[Column, ...]) -> tuple[int, int] | None:
+    """Where the first of columns begins that follow each other in every row, and how far the rows are apart."""
+    begins = [column.at.start if isinstance(column.at, range) else -1 for column in columns]
+    kind = columns[0].values.dtype
+    follow = all(begin == begins[0] + kind.itemsize * i for i, begin in enumerate(begins))
+    if begins[0] < 0 or not follow or any(column.values.dtype != kind for column in columns):
+        return None
+    at = columns[0].at
+    assert isinstance(at, range)
+    return at.start, at.step
+
+
+def _typed(new: NDArray[np.float64], kind: np.dtype[Any], where: Any) -> tuple[NDArray[Any], float]:
+    """Values in a file's type, and the largest rounding error of those that count."""
     with np.errstate(over="ignore", invalid="ignore"):
         typed = (np.rint(new) if kind.kind in "iu" else new).astype(kind)
-        error = float(np.abs(typed - new)[changed].max())
-    fits = np.isfinite(error) and (kind.kind == "f" or error <= 0.5)
-    if not fits:
+        error = float(np.abs(typed - new).max(initial=0.0, where=where)) if kind != np.float64 else 0.0
+    if not np.isfinite(error) or (kind.kind in "iu" and error > 0.5):
         raise UnsupportedFormat(f"the file stores coordinates as {NAMES[kind.str[1:]]}; the new ones do not fit")
-    stored = typed.astype(kind.newbyteorder(order))
-    if isinstance(column.at, range):
-        view = np.ndarray(len(column.at), stored.dtype, data, column.at.start, (column.at.step,))
-        np.copyto(view, stored, where=changed)
-    else:
-        at = column.at[changed]
-        data[at[:, None] + np.arange(kind.itemsize)] = stored[changed].view(np.uint8).reshape(len(at), -1)
-    return error
+    return typed, error
 
 
 def new_file(mesh: PolygonMesh, keeps: Keeps) -> Encoded:
@@ -110,43 +135,8 @@ def new_file(mesh: PolygonMesh, keeps: Keeps) -> Encoded:
     head = ["ply\nformat binary_little_endian 1.0\n"]
     for name, rows, columns in elements:
         head += [f"element {name} {rows}\n", *(column.header() for column in columns)]
-    body = [_packed(columns, rows) for _, rows, columns in elements]
+    body = [packed(columns, rows) for _, rows, columns in elements]
     return Encoded([bytes_of("".join([*head, "end_header\n"])), *body], tuple(losses))
-
-
-@dataclass(frozen=True, eq=False)
-class Block:
-    """Properties of one type side by side: (n, d) values."""
-
-    names: tuple[str, ...]
-    values: NDArray[Any]
-
-    def header(self) -> str:
-        """The lines that declare it."""
-        return "".join(f"property {NAMES[self.values.dtype.str[1:]]} {name}\n" for name in self.names)
-
-
-@dataclass(frozen=True, eq=False)
-class Lists:
-    """A property whose rows are lists, one after another."""
-
-    name: str
-    values: NDArray[Any]
-    offsets: NDArray[np.int64]
-
-    @cached_property
-    def lengths(self) -> NDArray[np.int64]:
-        """How long each list is."""
-        return np.diff(self.offsets)
-
-    @cached_property
-    def count(self) -> np.dtype[Any]:
-        """The type that lengths are stored in."""
-        return np.dtype("u1" if self.lengths.max(initial=0) < 256 else "<i4")
-
-    def header(self) -> str:
-        """The line that declares it."""
-        return f"property list {NAMES[self.count.str[1:]]} {NAMES[self.values.dtype.str[1:]]} {self.name}\n"
 
 
 def _properties(element: str, attributes: dict[str, NDArray[Any]], losses: list[str]) -> list[Block | Lists]:
@@ -185,47 +175,3 @@ def _segments(lines: Ragged) -> tuple[NDArray[np.int32], int]:
     first[lines.offsets[1:][lines.lengths > 0] - 1] = False
     at = np.flatnonzero(first)
     return np.stack([lines.flat[at], lines.flat[at + 1]], axis=1), int((lines.lengths != 2).sum())
-
-
-def _packed(columns: list[Block | Lists], rows: int) -> memoryview:
-    """The rows of all columns, interleaved."""
-    lists = [column for column in columns if isinstance(column, Lists)]
-    if rows and all((column.lengths == column.lengths[0]).all() for column in lists):
-        return _packed_alike(columns, rows)
-    pieces = []  # (values, how many a row) of each count, list and block
-    for column in columns:
-        if isinstance(column, Lists):
-            pieces.append((column.lengths.astype(column.count), np.ones(rows, np.int64)))
-            pieces.append((_little(column.values), column.lengths))
-        else:
-            pieces.append((_little(column.values).ravel(), np.full(rows, column.values.shape[1])))
-    sizes = [length * values.itemsize for values, length in pieces]
-    ends = np.cumsum(np.sum(sizes, axis=0))
-    body = np.empty(int(ends[-1]) if rows else 0, np.uint8)
-    place = ends - np.sum(sizes, axis=0)
-    for (values, length), size in zip(pieces, sizes, strict=True):
-        width = values.itemsize
-        at = np.repeat(place - width * (np.cumsum(length) - length), length) + width * np.arange(len(values))
-        body[at[:, None] + np.arange(width)] = np.ascontiguousarray(values).view(np.uint8).reshape(-1, width)
-        place = place + size
-    return body.data
-
-
-def _packed_alike(columns: list[Block | Lists], rows: int) -> memoryview:
-    """The rows of columns whose lists are all of one length."""
-    fields: list[tuple[str, Any, tuple[int, ...]]] = []
-    for i, column in enumerate(columns):
-        width = column.values.shape[1] if isinstance(column, Block) else int(column.lengths[0])
-        if isinstance(column, Lists):
-            fields.append((f"count{i}", column.count, ()))
-        fields.append((f"values{i}", column.values.dtype.newbyteorder("<"), (width,)))
-    record = np.empty(rows, np.dtype(fields))
-    for i, column in enumerate(columns):
-        if isinstance(column, Lists):
-            record[f"count{i}"] = column.lengths[0]
-        record[f"values{i}"] = column.values.reshape(rows, -1)
-    return record.view(np.uint8).data
-
-
-def _little(values: NDArray[Any]) -> NDArray[Any]:
-    return np.asarray(values, values.dtype.newbyteorder("<"))

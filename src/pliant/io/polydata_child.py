@@ -1,8 +1,8 @@
 """A process of its own that reads one VTK file, so that a damaged one harms nobody.
 
 VTK's readers may crash, or ask for memory without end, on a file that lies about its sizes. Called as
-``python -m pliant.io.polydata_child FILE OUT BYTES SECONDS``: the arrays go to an .npz file, what VTK complains of
-to the standard error.
+``python -m pliant.io.polydata_child FILE OUT BYTES SECONDS``: OUT receives a line of JSON with the arrays' names, and
+the arrays one after another as .npy; what VTK complains of goes to the standard error.
 """
 
 from __future__ import annotations
@@ -65,8 +65,10 @@ def main(path: str, out: str, memory: int, seconds: int) -> int:
         if kind != "field":
             active = {word: getattr(fields, f"Get{word}")() for word in ("Scalars", "Vectors", "Normals", "TCoords")}
             meta["active"][kind] = {word: array.GetName() for word, array in active.items() if array}
-    arrays["meta"] = np.frombuffer(json.dumps(meta).encode(), np.uint8)
-    np.savez(out, **arrays)  # type: ignore[arg-type]
+    with Path(out).open("wb") as stream:
+        stream.write(json.dumps({**meta, "arrays": list(arrays)}).encode() + b"\n")
+        for array in arrays.values():
+            np.save(stream, array, allow_pickle=False)
     return 0
 
 

@@ -7,7 +7,6 @@ import re
 import subprocess
 import sys
 import tempfile
-import zipfile
 from pathlib import Path
 from typing import Any
 
@@ -35,7 +34,7 @@ def read(source: Source) -> tuple[dict[str, NDArray[Any]], dict[str, Any]]:
     memory = _MEMORY + _PER_BYTE * len(source.data)
     seconds = _SECONDS + len(source.data) // _RATE
     with tempfile.TemporaryDirectory(prefix="pliant-") as folder:
-        path, out = Path(folder, "mesh"), Path(folder, "mesh.npz")
+        path, out = Path(folder, "mesh"), Path(folder, "arrays")
         path.write_bytes(source.data)
         command = [sys.executable, "-m", "pliant.io.polydata_child", str(path), str(out), str(memory), str(seconds)]
         try:
@@ -45,12 +44,11 @@ def read(source: Source) -> tuple[dict[str, NDArray[Any]], dict[str, Any]]:
         if done.returncode:
             raise source.unreadable(_cause(done), "the file is cut off or damaged: copy or export it again")
         try:
-            with np.load(out, allow_pickle=False) as stored:
-                arrays = {name: stored[name] for name in stored.files}
-        except (OSError, ValueError, zipfile.BadZipFile) as error:
+            with out.open("rb") as stream:
+                meta: dict[str, Any] = json.loads(stream.readline())
+                return {name: np.load(stream, allow_pickle=False) for name in meta["arrays"]}, meta
+        except (OSError, ValueError) as error:
             raise source.unreadable("VTK gave no result", "the file is damaged: export it again") from error
-    meta: dict[str, Any] = json.loads(arrays.pop("meta").tobytes())
-    return arrays, meta
 
 
 def _cause(done: subprocess.CompletedProcess[bytes]) -> str:

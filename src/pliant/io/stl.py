@@ -22,7 +22,7 @@ from pliant.numerics.ragged import Ragged
 
 _RECORD = np.dtype([("normal", "<f4", 3), ("points", "<f4", (3, 3)), ("attribute", "<u2")])
 _HEAD = 84
-_CHUNK = 16_384  # triangles at a time, so that what lies between stays in cache
+_CHUNK = 8_192  # triangles at a time, so that what lies between stays in cache
 _TEXT = re.compile(rb"(?i)(?:\xef\xbb\xbf)?\s*solid\b[^\r\n]*[\r\n]+\s*(?:facet|endsolid)\b")
 _ORDER = re.compile(r"(?:s(?:flvvvep)*t)+")  # the words below, a letter each
 _WORDS = {
@@ -146,18 +146,26 @@ def _explain_order(source: Source, lines: Lines, order: str) -> None:
     raise source.unreadable(cause, cure, at=place)
 
 
+def _columns(corners: NDArray[np.float64]) -> NDArray[np.float64]:
+    """(3, 3, t) coordinate by corner by triangle of (t, 9) or (t, 3, 3) corners: how arithmetic on many is fast."""
+    return np.ascontiguousarray(corners.reshape(-1, 3, 3).transpose(2, 1, 0))
+
+
 def _normals(corners: NDArray[np.float64]) -> NDArray[np.float64]:
-    """(t, 3) unit normals of (t, 3, 3) corners; zero for triangles without area."""
-    a, b = (np.ascontiguousarray((corners[:, i] - corners[:, 0]).T) for i in (1, 2))
-    normals = np.stack([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
+    """(t, 3) unit normals of (3, 3, t) corners; zero for triangles without area."""
+    a, b = corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]
+    normals = np.empty_like(a)
+    for axis, (i, j) in enumerate(((1, 2), (2, 0), (0, 1))):
+        normals[axis] = a[i] * b[j] - a[j] * b[i]
     size = np.sqrt((normals * normals).sum(axis=0))
-    normals /= np.where(size > 0, size, 1.0)
+    size[size == 0] = 1.0
+    normals /= size
     return normals.T
 
 
 def _same_binary(mesh: PolygonMesh, carrier: Carrier) -> Encoded:
     old, new = carrier.mesh.points.reshape(-1, 9), mesh.points.reshape(-1, 9)
-    rounded, notes = as_float32(mesh.points, Stl.name)
+    _, notes = as_float32(mesh.points, Stl.name)
     data = np.frombuffer(carrier.data, np.uint8).copy()
     records = data[_HEAD:].view(_RECORD)
 
@@ -165,8 +173,8 @@ def _same_binary(mesh: PolygonMesh, carrier: Carrier) -> Encoded:
         changed = first + np.flatnonzero((old[first:stop] != new[first:stop]).any(axis=1))
         if len(changed):
             at = slice(first, stop) if len(changed) == stop - first else changed
-            records["points"][at] = rounded.reshape(-1, 3, 3)[at]
-            records["normal"][at] = _normals(new[at].reshape(-1, 3, 3))
+            records["points"][at] = new[at].reshape(-1, 3, 3)
+            records["normal"][at] = _normals(_columns(new[at]))
 
     for_chunks(work, len(records), _CHUNK)
     return Encoded([data.data], notes=notes)
@@ -176,21 +184,22 @@ def _same_text(mesh: PolygonMesh, carrier: Carrier) -> Encoded:
     layout: Layout = carrier.layout
     changed = (mesh.points != carrier.mesh.points).reshape(-1, 9).any(axis=1)
     normals = layout.values.copy()
-    normals[changed] = _normals(mesh.points.reshape(-1, 3, 3)[changed])
+    normals[changed] = _normals(_columns(mesh.points.reshape(-1, 9)[changed]))
     starts = np.concatenate([layout.points.ravel(), layout.normals.ravel()])
     old = np.concatenate([carrier.mesh.points.ravel(), layout.values.ravel()])
     return Encoded([patched(carrier.data, starts, old, np.concatenate([mesh.points.ravel(), normals.ravel()]))])
 
 
 def _new_file(mesh: PolygonMesh, keeps: Keeps) -> Encoded:
-    rounded, rounding = as_float32(mesh.points, Stl.name)
+    _, rounding = as_float32(mesh.points, Stl.name)
     triangles = mesh.faces.flat.reshape(-1, 3) if mesh.faces.uniform == 3 else mesh.triangles
     records = np.zeros(len(triangles), _RECORD)
+    columns = np.ascontiguousarray(mesh.points.T)
 
     def work(first: int, stop: int) -> None:
-        some = triangles[first:stop]
-        records["points"][first:stop] = rounded[some]
-        records["normal"][first:stop] = _normals(mesh.points[some])
+        corners = np.take(columns, triangles[first:stop].T, axis=1)
+        records["points"][first:stop] = corners.T
+        records["normal"][first:stop] = _normals(corners)
 
     for_chunks(work, len(triangles), _CHUNK)
     known: tuple[str, ...] = ()
