@@ -17,5 +17,6 @@ from .rendering.pictures import render as render
 from .space.affine import Affine as Affine
 from .space.bezier_ffd import BezierFFD as BezierFFD
 from .space.bspline_ffd import BSplineFFD as BSplineFFD
+from .space.displacement_grid import DisplacementGrid as DisplacementGrid
 from .space.inverse import Inverse as Inverse
 from .space.placed import place as place

@@ -19,7 +19,8 @@ from pliant.numerics.bases import BernsteinPoints
 from pliant.numerics.cells import BERNSTEIN, CellGrid, CellPoints
 from pliant.numerics.ragged import frozen
 from pliant.space.box import box_around, checked_axes, thickened
-from pliant.space.lattice import LatticeBinding, Padding
+from pliant.space.control_maps import Padding
+from pliant.space.lattice import LatticeBinding
 
 Floats = NDArray[np.float64]
 Outside = Literal["identity", "extend", "error"]

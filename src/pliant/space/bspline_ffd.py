@@ -19,13 +19,14 @@ from pliant.mesh import Points, PolygonMesh, as_points
 from pliant.numerics.cells import BSPLINE, CellGrid, CellPoints, evaluate_once
 from pliant.numerics.ragged import frozen
 from pliant.space.box import box_around, checked_axes, thickened
-from pliant.space.lattice import LatticeBinding, Padding
+from pliant.space.control_maps import Padding
+from pliant.space.lattice import LatticeBinding
 
 Floats = NDArray[np.float64]
-Edge = Literal["clamp", "zero"]
+Edge = Literal["clamp", "zero", "identity"]
 Direction = Literal["push-forward", "pull-back"]
 
-_LAYERS = {"clamp": 2, "zero": 3}  # values beyond the lattice that the support of its last control points reaches
+_LAYERS = {"clamp": 2, "zero": 3, "identity": 0}  # values beyond the lattice on each side that points can reach
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
@@ -47,7 +48,8 @@ class BSplineFFD(SpaceDeformer):
         (4, 4) the global part, applied to positions before the displacement is added.
     edge
         What stands beyond the last control points: ``"clamp"`` their own displacement (translations are
-        reproduced everywhere), ``"zero"`` none.
+        reproduced everywhere), ``"zero"`` none, ``"identity"`` nothing at all: where a point is not surrounded by
+        4 x 4 x 4 control points, only the affine part moves it. The map then jumps one spacing inside the lattice.
     direction
         What the map is used for: ``"push-forward"`` moves points, ``"pull-back"`` says where a target's points come
         from, as registration files do. Calling it applies the map to points, either way.
@@ -81,7 +83,11 @@ class BSplineFFD(SpaceDeformer):
         if not (values["spacing"] > 0).all():
             raise InvalidDeformer(f"lattice spacing must be positive; it is {values['spacing'].tolist()}")
         if self.edge not in _LAYERS:
-            raise InvalidDeformer(f"edge is {self.edge!r}; it must be 'clamp' or 'zero'")
+            raise InvalidDeformer(f"edge is {self.edge!r}; it must be 'clamp', 'zero' or 'identity'")
+        if self.edge == "identity" and min(values["displacements"].shape[:3]) < 4:
+            raise InvalidDeformer(
+                f"edge='identity' needs four control points an axis; the shape is {values['displacements'].shape[:3]}"
+            )
         for name, value in values.items():
             object.__setattr__(self, name, frozen(value, np.float64))
 
@@ -164,8 +170,8 @@ class BSplineFFD(SpaceDeformer):
     def refined(self) -> BSplineFFD:
         """The same map on half the spacing, exactly, by knot insertion (Lane & Riesenfeld 1980).
 
-        Axes with one control point stay as they are. Where the edge policy needs it, the finer lattice has one
-        layer ("clamp") or two ("zero") beyond the old ends.
+        Axes with one control point stay as they are. As the edge policy needs it, the finer lattice ends one layer
+        ("clamp") or two ("zero") beyond the old ends, or one before them ("identity").
         """
         origin, spacing, values = self.origin.copy(), self.spacing.copy(), self.displacements
         for axis in range(3):
@@ -187,8 +193,8 @@ class BSplineFFD(SpaceDeformer):
         frame[:, :3] = self.axes.T / self.spacing[:, None]
         frame[:, 3] = self._layers - 1 - frame[:, :3] @ self.origin
         limits = np.stack([np.zeros(3), counts.astype(np.float64)])
-        ends = (self._layers == _LAYERS["zero"]) & (np.array(self.shape) > 1)
-        keep = np.where(ends, limits, [[-np.inf], [np.inf]])  # beyond a zero edge nothing moves, exactly
+        ends = (self._layers != _LAYERS["clamp"]) & (np.array(self.shape) > 1)
+        keep = np.where(ends, limits, [[-np.inf], [np.inf]])  # beyond these edges nothing moves, exactly
         return CellGrid(frame, counts, 1, BSPLINE, limits, keep)
 
     @cached_property
@@ -211,7 +217,7 @@ def _refine(values: Floats, axis: int, edge: Edge) -> tuple[Floats, int]:
     middles = (padded[:-1] + padded[1:]) / 2  # between -2 and -1 ... n and n + 1
     fine = np.empty((2 * len(knots) - 1, *moved.shape[1:]))
     fine[0::2], fine[1::2] = knots, middles[1:-1]  # fine control points -2 ... 2 n
-    layers = 1 if edge == "clamp" else 2
+    layers = {"clamp": 1, "zero": 2, "identity": -1}[edge]
     return np.moveaxis(fine[2 - layers : len(fine) - 2 + layers], 0, axis), layers
 
 

@@ -13,9 +13,9 @@ from scipy.sparse.linalg import LinearOperator
 from pliant.deformer import Controls, Drag, LinearBinding, checked_controls, checked_out
 from pliant.errors import InvalidControls
 from pliant.mesh import Points
+from pliant.space.control_maps import ControlMap, Shares
 
 Floats = NDArray[np.float64]
-Shares = tuple[Floats, Floats, Floats]
 
 
 class SampledBasis(Protocol):
@@ -30,54 +30,6 @@ class SampledBasis(Protocol):
     def basis_values(self) -> tuple[NDArray[np.int64], Floats]: ...
     @property
     def outside(self) -> NDArray[Any]: ...
-
-
-class Padding:
-    """How control points become the values that a basis sums: repeated or followed by zeros at the edges.
-
-    Parameters
-    ----------
-    shape
-        (3,) numbers of control points.
-    sources
-        For each axis, which control point each value is taken from; -1 for a zero.
-    """
-
-    def __init__(self, shape: tuple[int, int, int], sources: tuple[NDArray[np.int64], ...]) -> None:
-        self.shape, self._sources = shape, sources
-        self._plain = all(np.array_equal(s, np.arange(n)) for s, n in zip(sources, shape, strict=True))
-
-    def values(self, controls: Floats) -> Floats:
-        """(x, y, z, 3) what the basis sums, from (nx, ny, nz, 3)."""
-        if self._plain:
-            return np.ascontiguousarray(controls)
-        for axis, source in enumerate(self._sources):
-            controls = np.take(controls, np.maximum(source, 0), axis=axis)
-            if (source < 0).any():
-                controls[(slice(None),) * axis + (source < 0,)] = 0.0
-        return np.ascontiguousarray(controls)
-
-    def transpose(self, values: Floats) -> Floats:
-        """(nx, ny, nz, 3) the transpose of :meth:`values`."""
-        if self._plain:
-            return values
-        for axis, (source, count) in enumerate(zip(self._sources, self.shape, strict=True)):
-            share = (source == np.arange(count)[:, None]).astype(np.float64)
-            values = np.moveaxis(np.tensordot(share, values, axes=(1, axis)), 0, axis)
-        return np.ascontiguousarray(values)
-
-    def shares(self, index: tuple[int, ...]) -> Shares:
-        """For each axis, 1 where a value is taken from that control point, else 0."""
-        x, y, z = ((s == i).astype(np.float64) for s, i in zip(self._sources, index, strict=True))
-        return x, y, z
-
-    @property
-    def owners(self) -> NDArray[np.int64]:
-        """(x, y, z) the flat control point that each value is taken from; -1 for a zero."""
-        x, y, z = self._sources
-        i, j, k = x[:, None, None], y[None, :, None], z[None, None, :]
-        flat = (i * self.shape[1] + j) * self.shape[2] + k
-        return np.where((i < 0) | (j < 0) | (k < 0), -1, flat)
 
 
 class LatticeBinding(LinearBinding):
@@ -96,7 +48,7 @@ class LatticeBinding(LinearBinding):
     """
 
     def __init__(
-        self, sampled: SampledBasis, padding: Padding, rest: Controls, displacements: Controls, base: Points
+        self, sampled: SampledBasis, padding: ControlMap, rest: Controls, displacements: Controls, base: Points
     ) -> None:
         self._sampled, self._padding = sampled, padding
         self._rest, self._displacements, self._base = rest, displacements, base
@@ -148,11 +100,11 @@ class LatticeBinding(LinearBinding):
     def matrix(self) -> csr_array:
         """(n, m) W as a sparse matrix: 64 numbers a point for cubic lattices, so ask for few points."""
         columns, values = self._sampled.basis_values()
-        owners = self._padding.owners.reshape(-1)[columns]
         rows = np.broadcast_to(np.arange(len(columns))[:, None], columns.shape)
-        kept = (owners >= 0) & (values != 0)
-        shape = (len(self.points), int(np.prod(self._rest.shape[:3])))
-        return csr_array((values[kept], (rows[kept], owners[kept])), shape=shape)
+        sums = self._padding.matrix()
+        used = values != 0
+        shape = (len(self.points), sums.shape[0])
+        return csr_array((values[used], (rows[used], columns[used])), shape=shape) @ sums
 
 
 class LatticeDrag(Drag):
