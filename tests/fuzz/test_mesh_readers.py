@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from pliant.errors import PliantWarning, UnreadableFile, UnsupportedFormat
-from pliant.io.meshes import read_mesh_bytes
+from pliant.io.meshes import read_mesh_bytes, write
 from pliant.mesh import PolygonMesh
 
 
@@ -64,6 +64,24 @@ def test_a_damaged_file_is_a_valid_mesh_or_a_clear_error(name: str) -> None:
         if mesh is not None:
             require_valid(mesh)
     assert time.process_time() - begin < 60 + COUNT  # a reader that does not end would hang the run
+
+
+@pytest.mark.parametrize("ending", ["vtp", "vtk"])
+def test_a_damaged_vtk_file_is_a_valid_mesh_or_a_clear_error(ending: str, tmp_path: Path) -> None:
+    pytest.importorskip("vtkmodules")
+    path = tmp_path / f"seed.{ending}"
+    write(PolygonMesh(np.eye(3), [[0, 1, 2]], vertex_attributes={"heat": np.arange(3.0)}), path)
+    for data in mutants(path.read_bytes(), list(SEEDS.values()), max(1, COUNT // 15), ending):  # a process each
+        mesh = attempt(data, ending)
+        if mesh is not None:
+            require_valid(mesh)
+
+
+@pytest.mark.parametrize("data", [b"# " * 2000 + b"\nX", b"<?xml?>" + b"<!---->" * 580, b"solid" + b"\n" * 4000])
+def test_recognising_a_format_takes_no_time(data: bytes) -> None:
+    begin = time.process_time()
+    assert attempt(data, "dat") is None
+    assert time.process_time() - begin < 10  # a pattern that goes back and forth would take years
 
 
 @pytest.mark.parametrize(

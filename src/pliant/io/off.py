@@ -19,7 +19,7 @@ from pliant.io.text import Lines, Offsets, count_words, patched, plain_text, rag
 from pliant.mesh import CornerValues, PolygonMesh
 from pliant.numerics.ragged import Ragged
 
-_HEADER = re.compile(rb"(?:\xef\xbb\xbf)?(?:\s|#[^\r\n]*)*((?:ST)?C?N?)(4?n?)OFF(?![A-Za-z0-9_])([ \t]+BINARY)?")
+_HEADER = re.compile(rb"(?:\xef\xbb\xbf)?(?:\s++|#[^\r\n]*+)*+((?:ST)?C?N?)(4?n?)OFF(?![A-Za-z0-9_])([ \t]+BINARY)?")
 
 
 @dataclass(frozen=True, eq=False)

@@ -19,7 +19,9 @@ from pliant.io.polydata_writer import Layout
 from pliant.mesh import CornerValues, PolygonMesh
 from pliant.numerics.ragged import Ragged
 
-_XML = re.compile(rb"\s*(?:<\?xml[^>]*>)?(?:\s|<!--.*?-->)*<VTKFile\b[^>]*\btype\s*=\s*[\"'](\w+)[\"']", re.S)
+_XML = re.compile(
+    rb"\s*(?:<\?xml[^>]*>)?(?>\s++|<!--(?:(?!-->).)*-->)*+<VTKFile\b[^>]*\btype\s*=\s*[\"'](\w+)[\"']", re.S
+)
 _LEGACY = re.compile(rb"# vtk DataFile Version[^\n]*\n[^\n]*\n\s*(ASCII|BINARY)\s*\n\s*DATASET\s+(\w+)", re.I)
 
 

@@ -23,7 +23,7 @@ from pliant.numerics.ragged import Ragged
 _RECORD = np.dtype([("normal", "<f4", 3), ("points", "<f4", (3, 3)), ("attribute", "<u2")])
 _HEAD = 84
 _CHUNK = 8_192  # triangles at a time, so that what lies between stays in cache
-_TEXT = re.compile(rb"(?i)(?:\xef\xbb\xbf)?\s*solid\b[^\r\n]*[\r\n]+\s*(?:facet|endsolid)\b")
+_TEXT = re.compile(rb"(?i)(?:\xef\xbb\xbf)?\s*solid\b[^\r\n]*[\r\n]\s*+(?:facet|endsolid)\b")
 _ORDER = re.compile(r"(?:s(?:flvvvep)*t)+")  # the words below, a letter each
 _WORDS = {
     b"solid": "s", b"facet": "f", b"outer": "l", b"vertex": "v", b"endloop": "e", b"endfacet": "p", b"endsolid": "t",
