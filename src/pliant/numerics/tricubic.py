@@ -86,13 +86,16 @@ def locate(points, first, stop, frame, limits, keep, grid, order, rank, local, s
 
 
 @inlined
-def _horner(basis, b, t):
-    return ((t * basis[3, b] + basis[2, b]) * t + basis[1, b]) * t + basis[0, b]
+def _tabulate(table, at, basis, t):
+    """The four basis functions of eight parameters, from ``table[at]`` on."""
+    for b in range(4):
+        store(table, at + 8 * b, ((t * basis[3, b] + basis[2, b]) * t + basis[1, b]) * t + basis[0, b])
 
 
 @inlined
-def _slope(basis, b, t):
-    return (t * (3.0 * basis[3, b]) + 2.0 * basis[2, b]) * t + basis[1, b]
+def _tabulate_slopes(table, at, basis, t):
+    for b in range(4):
+        store(table, at + 8 * b, (t * (3.0 * basis[3, b]) + 2.0 * basis[2, b]) * t + basis[1, b])
 
 
 @inlined
@@ -104,52 +107,21 @@ def _corner(cell, grid, stride, shape):
 
 
 @inlined
-def _along_z(lattice, at, z):
-    return (
-        z[0] * get(lattice, at)
-        + z[1] * get(lattice, at + 3)
-        + z[2] * get(lattice, at + 6)
-        + z[3] * get(lattice, at + 9)
-    )
+def _cube(lattice, at, down_x, down_y, table, x, y, z):
+    """The sum over 4 x 4 x 4 control values: along z, then y, then x, 84 multiply-adds.
 
-
-@inlined
-def _plane(lattice, at, down_y, y, z):
-    return (
-        y[0] * _along_z(lattice, at, z)
-        + y[1] * _along_z(lattice, at + down_y, z)
-        + y[2] * _along_z(lattice, at + 2 * down_y, z)
-        + y[3] * _along_z(lattice, at + 3 * down_y, z)
-    )
-
-
-@inlined
-def _cube(lattice, at, down_x, down_y, x, y, z):
-    """The sum over 4 x 4 x 4 control values: along z, then y, then x, 84 multiply-adds."""
-    return (
-        x[0] * _plane(lattice, at, down_y, y, z)
-        + x[1] * _plane(lattice, at + down_x, down_y, y, z)
-        + x[2] * _plane(lattice, at + 2 * down_x, down_y, y, z)
-        + x[3] * _plane(lattice, at + 3 * down_x, down_y, y, z)
-    )
-
-
-@inlined
-def _values(basis, t):
-    return _horner(basis, 0, t), _horner(basis, 1, t), _horner(basis, 2, t), _horner(basis, 3, t)
-
-
-@inlined
-def _tabulate(table, at, basis, t):
-    """The four basis functions at ``table[at]``, then their slopes."""
-    for b in range(4):
-        store(table, at + 8 * b, _horner(basis, b, t))
-        store(table, at + 32 + 8 * b, _slope(basis, b, t))
-
-
-@inlined
-def _row(table, at):
-    return load(table, at), load(table, at + 8), load(table, at + 16), load(table, at + 24)
+    ``x``, ``y`` and ``z`` say where in the table the factors along each axis begin.
+    """
+    z0, z1, z2, z3 = load(table, z), load(table, z + 8), load(table, z + 16), load(table, z + 24)
+    cube = spread(0.0)
+    for i in range(4):
+        plane = spread(0.0)
+        for j in range(4):
+            p = at + i * down_x + j * down_y
+            row = z0 * get(lattice, p) + z1 * get(lattice, p + 3) + z2 * get(lattice, p + 6) + z3 * get(lattice, p + 9)
+            plane = plane + load(table, y + 8 * j) * row
+        cube = cube + load(table, x + 8 * i) * plane
+    return cube
 
 
 @kernel
@@ -159,16 +131,15 @@ def evaluate(first, starts, order, rank, local, grid, stride, basis, lattice, sh
     Where all cells are chosen, points that belong to none get their base.
     """
     length, cells = len(local) // 3, len(starts) - 2
-    moved, piece = np.empty(3 * (starts[cells + 1] + 8)), np.empty(24)
+    moved, table, piece = np.empty(3 * (starts[cells + 1] + 8)), np.empty(96), np.empty(24)
     down_x, down_y = shape[1] * shape[2] * 3, shape[2] * 3
     for cell in chosen:
         corner = _corner(cell, grid, stride, shape)
         for at in range(first + starts[cell], first + starts[cell + 1], 8):
-            x = _values(basis, load(local, at))
-            y = _values(basis, load(local, length + at))
-            z = _values(basis, load(local, 2 * length + at))
+            for axis in range(3):
+                _tabulate(table, 32 * axis, basis, load(local, axis * length + at))
             for c in range(3):
-                store(piece, 8 * c, _cube(lattice, corner + c, down_x, down_y, x, y, z))
+                store(piece, 8 * c, _cube(lattice, corner + c, down_x, down_y, table, 0, 32, 64))
             store_triples(moved, 3 * (at - first), load(piece, 0), load(piece, 8), load(piece, 16))
     if len(chosen) < cells:
         for cell in chosen:
@@ -196,16 +167,13 @@ def differentiate(first, starts, order, local, frame, grid, stride, basis, latti
         for at in range(first + starts[cell], stop, 8):
             for axis in range(3):
                 _tabulate(table, 64 * axis, basis, load(local, axis * length + at))
+                _tabulate_slopes(table, 64 * axis + 32, basis, load(local, axis * length + at))
             for entry in range(9):
                 store(scratch, 8 * entry, spread(linear[entry // 3, entry % 3]))
             for axis in range(3):
-                x, y, z = (
-                    _row(table, 32 * (axis == 0)),
-                    _row(table, 64 + 32 * (axis == 1)),
-                    _row(table, 128 + 32 * (axis == 2)),
-                )
+                x, y, z = 32 * (axis == 0), 64 + 32 * (axis == 1), 128 + 32 * (axis == 2)
                 for c in range(3):
-                    slope = _cube(lattice, corner + c, down_x, down_y, x, y, z)
+                    slope = _cube(lattice, corner + c, down_x, down_y, table, x, y, z)
                     for a in range(3):
                         place = 8 * (3 * c + a)
                         store(scratch, place, load(scratch, place) + slope * frame[axis, a])
@@ -223,7 +191,7 @@ def gather(first, starts, order, local, grid, stride, basis, shape, values, latt
     """Add the transpose of :func:`evaluate` to a lattice: each point's value, spread over its 64 control values."""
     length = len(local) // 3
     sums = np.empty(192 * 8)
-    across = np.empty(64)
+    table = np.empty(96)
     here = np.empty(24)
     for cell in range(len(starts) - 2):
         if starts[cell] == starts[cell + 1]:
@@ -236,18 +204,14 @@ def gather(first, starts, order, local, grid, stride, basis, shape, values, latt
                 for c in range(3):
                     put(here, 3 * i + c, get(values, 3 * get(order, at + i) + c))
             value = load_triples(here, 0)
-            x = _values(basis, load(local, at))
-            y = _values(basis, load(local, length + at))
-            z = _values(basis, load(local, 2 * length + at))
-            for b in range(4):
-                store(across, 8 * b, x[b])
-                store(across, 32 + 8 * b, y[b])
+            for axis in range(3):
+                _tabulate(table, 32 * axis, basis, load(local, axis * length + at))
             for ij in range(16):
-                share = load(across, 8 * (ij // 4)) * load(across, 32 + 8 * (ij % 4))
+                share = load(table, 8 * (ij // 4)) * load(table, 32 + 8 * (ij % 4))
                 for k in range(4):
                     for c in range(3):
                         at_sum = 8 * (12 * ij + 3 * k + c)
-                        store(sums, at_sum, load(sums, at_sum) + share * z[k] * value[c])
+                        store(sums, at_sum, load(sums, at_sum) + share * load(table, 64 + 8 * k) * value[c])
         corner = _corner(cell, grid, stride, shape)
         for ij in range(16):
             row = corner + ((ij // 4) * shape[1] + ij % 4) * shape[2] * 3
