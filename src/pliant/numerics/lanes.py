@@ -68,6 +68,7 @@ def _define(symbol: Any, instruction: str) -> None:
 _define(operator.add, "fadd")
 _define(operator.sub, "fsub")
 _define(operator.mul, "fmul")
+_define(operator.truediv, "fdiv")
 
 
 @intrinsic
@@ -143,7 +144,7 @@ def clamp(_typing: Any, value: Any, low: Any, high: Any) -> Any:
 
 @intrinsic
 def where_between(_typing: Any, value: Any, low: Any, high: Any, inside: Any, outside: Any) -> Any:
-    """``inside`` in the lanes where low <= value <= high, ``outside`` in the others."""
+    """``inside`` in the lanes where low <= value <= high, ``outside``, lanes or a float, in the others."""
 
     def generate(_context: Any, builder: Any, _signature: Any, args: Any) -> Any:
         low, high, outside = (_spread(builder, args[i]) for i in (1, 2, 4))
@@ -151,7 +152,7 @@ def where_between(_typing: Any, value: Any, low: Any, high: Any, inside: Any, ou
         below = builder.fcmp_ordered("<=", args[0], high)
         return builder.select(builder.and_(above, below), args[3], outside)
 
-    return lanes(lanes, types.float64, types.float64, lanes, types.float64), generate
+    return lanes(lanes, types.float64, types.float64, lanes, outside), generate
 
 
 @intrinsic
@@ -161,6 +162,29 @@ def whole(_typing: Any, value: Any) -> Any:
     def generate(_context: Any, builder: Any, _signature: Any, args: Any) -> Any:
         floor_type = ir.FunctionType(_VECTOR, [_VECTOR])
         return builder.call(cgutils.get_or_insert_function(builder.module, floor_type, "llvm.floor.v8f64"), args)
+
+    return lanes(lanes), generate
+
+
+@intrinsic
+def fused(_typing: Any, a: Any, b: Any, c: Any) -> Any:
+    """A * b + c with one rounding, which no optimisation reorders: for sums that cancel; b is a float."""
+
+    def generate(_context: Any, builder: Any, _signature: Any, args: Any) -> Any:
+        fused_type = ir.FunctionType(_VECTOR, [_VECTOR] * 3)
+        function = cgutils.get_or_insert_function(builder.module, fused_type, "llvm.fma.v8f64")
+        return builder.call(function, [args[0], _spread(builder, args[1]), args[2]])
+
+    return lanes(lanes, types.float64, lanes), generate
+
+
+@intrinsic
+def root(_typing: Any, value: Any) -> Any:
+    """The square root of each lane."""
+
+    def generate(_context: Any, builder: Any, _signature: Any, args: Any) -> Any:
+        root_type = ir.FunctionType(_VECTOR, [_VECTOR])
+        return builder.call(cgutils.get_or_insert_function(builder.module, root_type, "llvm.sqrt.v8f64"), args)
 
     return lanes(lanes), generate
 

@@ -12,8 +12,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pliant.deformer import Binding, Controls, SpaceDeformer, Target, checked_controls, checked_out, require_finite
+from pliant.errors import InvalidDeformer
 from pliant.mesh import Points, as_points
 from pliant.space.affine import Affine
+
+SAME = 1e-13  # a movement of the object seen from its tool, relative to its coordinates, that is rounding
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,6 +36,13 @@ class Placed(SpaceDeformer):
     deformer: SpaceDeformer
     frame: Affine
 
+    def __post_init__(self) -> None:
+        if not isinstance(self.deformer, SpaceDeformer):
+            raise InvalidDeformer(
+                f"a {type(self.deformer).__name__} is no map of space: it deforms the mesh that it is bound to, "
+                "wherever that is; only maps of space can be placed"
+            )
+
     @property
     def rest(self) -> Controls:
         """The controls at which the deformer rests."""
@@ -47,10 +57,13 @@ class Placed(SpaceDeformer):
         """The deformer with other controls, in the same frame."""
         return type(self)(self.deformer.moved(controls), self.frame)
 
+    def at(self, frame: Affine) -> Self:
+        """The same tool elsewhere: to be moved over the object, frame by frame."""
+        return type(self)(self.deformer, frame)
+
     def bind(self, target: Target) -> PlacedBinding:
         """Bind the deformer to the target seen from its frame."""
-        points = as_points(target)
-        return PlacedBinding(self.deformer.bind(self.frame.inverse(points)), self.frame, points)
+        return PlacedBinding.of(self.deformer, self.frame, as_points(target))
 
     def jacobian(self, points: ArrayLike) -> NDArray[np.float64]:
         """(n, 3, 3) A J A^-1, with J at the points seen from the frame."""
@@ -66,8 +79,35 @@ class Placed(SpaceDeformer):
 class PlacedBinding(Binding):
     """A binding in a frame of its own."""
 
-    def __init__(self, inner: Binding, frame: Affine, points: Points) -> None:
-        self._inner, self._frame, self._points = inner, frame, points
+    def __init__(self, inner: Binding, frame: Affine, points: Points, deformer: SpaceDeformer) -> None:
+        self._inner, self._frame, self._points, self._deformer = inner, frame, points, deformer
+
+    @classmethod
+    def of(cls, deformer: SpaceDeformer, frame: Affine, points: Points) -> Self:
+        """A deformer in a frame, bound to (n, 3) points of the world."""
+        return cls(deformer.bind(frame.inverse(points)), frame, points, deformer)
+
+    def at(self, frame: Affine, target: Target | None = None) -> PlacedBinding:
+        """The tool in another frame, or over a target that has moved.
+
+        Where tool and object have moved together, as rigid bodies tied to one another do, what the binding has done
+        holds: only a placement of the tool relative to the object that is new is bound anew.
+
+        Parameters
+        ----------
+        frame
+            The affine map from the deformer's frame to the world, now.
+        target
+            The object, now; None = where it was.
+        """
+        points = self._points if target is None else as_points(target)
+        seen = frame.inverse(points)
+        before = self._inner.points
+        if seen.shape == before.shape:
+            size = float(np.abs(before).max(initial=1e-300))
+            if np.abs(seen - before).max(initial=0.0) <= SAME * size:
+                return PlacedBinding(self._inner, frame, points, self._deformer)
+        return PlacedBinding(self._deformer.bind(seen), frame, points, self._deformer)
 
     @property
     def rest(self) -> Controls:
@@ -103,5 +143,17 @@ class PlacedBinding(Binding):
 
 
 def place(deformer: SpaceDeformer, frame: Affine) -> Placed:
-    """The deformer, moved over the object by an affine map."""
+    """The deformer, moved over the object by an affine map.
+
+    The tool moves over the object: ``place(tool, frame)(mesh)``, with another frame at each moment. The object moves
+    through the tool: ``place(tool, frame)(frame(mesh))`` is the deformed mesh, carried; bound once, as
+    ``binding.at(frame, frame(mesh))``, it is not bound again.
+
+    Parameters
+    ----------
+    deformer
+        The map T.
+    frame
+        The affine map A from the deformer's frame to the world; not singular.
+    """
     return Placed(deformer, frame)
