@@ -17,6 +17,7 @@ from pliant.errors import InvalidDeformer, OutsideDomain
 from pliant.mesh import Points, PolygonMesh, as_points
 from pliant.numerics.bases import BernsteinPoints
 from pliant.numerics.cells import BERNSTEIN, CellGrid, CellPoints
+from pliant.numerics.polynomial_cells import PolynomialCells
 from pliant.numerics.ragged import frozen
 from pliant.space.box import box_around, checked_axes, thickened
 from pliant.space.control_maps import Padding
@@ -187,11 +188,30 @@ class BezierFFD(SpaceDeformer):
     def jacobian(self, points: ArrayLike) -> Floats:
         return self._sampled(as_points(points)).jacobian(self.displacements, np.eye(3))
 
+    def polynomial_cells(self) -> PolynomialCells:
+        """The map patch by patch: what proofs about it need."""
+        x, y, z = (3, 3, 3) if self.patches else (n - 1 for n in self.shape)
+        inner = self.displacements[self.free(0)]
+        return PolynomialCells(
+            self.displacements,
+            self._frame,
+            np.eye(3),
+            degrees=(x, y, z),
+            stride=(max(x, 1), max(y, 1), max(z, 1)),
+            splines=False,
+            whole=self.outside == "identity",
+            continuous=self.outside == "identity" and np.count_nonzero(inner) == np.count_nonzero(self.displacements),
+        )
+
+    @property
+    def _frame(self) -> Floats:
+        """(3, 4) from positions to parameters, counted in patches."""
+        inverse = np.linalg.inv(self.edges)
+        return np.column_stack([inverse, -inverse @ self.origin]) * np.array([self.patches or (1, 1, 1)]).T
+
     def _sampled(self, points: Points) -> CellPoints | BernsteinPoints:
         """The basis at some points: the sorted tricubic form wherever the patches are cubic."""
-        scale = np.array(self.patches or (1, 1, 1), np.float64)
-        inverse = np.linalg.inv(self.edges)
-        frame = np.column_stack([inverse, -inverse @ self.origin]) * scale[:, None]
+        scale, frame = np.array(self.patches or (1, 1, 1), np.float64), self._frame
         beyond = np.inf if self.outside == "extend" else TOLERANCE
         keep = np.stack([np.full(3, -beyond), scale + beyond])
         sampled: CellPoints | BernsteinPoints

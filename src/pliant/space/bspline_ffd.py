@@ -17,6 +17,7 @@ from pliant.deformer import Controls, SpaceDeformer, Target, checked_controls
 from pliant.errors import InvalidDeformer
 from pliant.mesh import Points, PolygonMesh, as_points
 from pliant.numerics.cells import BSPLINE, CellGrid, CellPoints, evaluate_once
+from pliant.numerics.polynomial_cells import PolynomialCells
 from pliant.numerics.ragged import frozen
 from pliant.space.box import box_around, checked_axes, thickened
 from pliant.space.control_maps import Padding
@@ -180,6 +181,14 @@ class BSplineFFD(SpaceDeformer):
                 spacing[axis] /= 2
                 origin -= layers * spacing[axis] * self.axes[:, axis]
         return replace(self, displacements=values, origin=origin, spacing=spacing, carrier=None)
+
+    def polynomial_cells(self) -> PolynomialCells:
+        """The map cell by cell, as far as its support reaches: what proofs about it need."""
+        values, grid = self._padding.values(self.displacements), self._grid
+        inner = values[3:-3, 3:-3, 3:-3]  # with edge "identity" the map is continuous where only these move
+        continuous = self.edge != "identity" or np.count_nonzero(inner) == np.count_nonzero(values)
+        linear = np.ascontiguousarray(self.affine[:3, :3])
+        return PolynomialCells(values, grid.frame, linear, (3, 3, 3), (1, 1, 1), splines=True, continuous=continuous)
 
     @cached_property
     def _layers(self) -> NDArray[np.int64]:
