@@ -85,6 +85,10 @@ class NotConverged(PliantError):
     """An iteration that stopped before its tolerance."""
 
 
+class SingularSystem(PliantError):
+    """Equations that do not determine their unknowns."""
+
+
 class NonFiniteResult(PliantError):
     """A computation that left the finite numbers."""
 
