@@ -55,7 +55,7 @@ class Certificate:
 
     @property
     def volume_error(self) -> tuple[float, float]:
-        """Bounds of the largest \\|det J - 1\\|: what was found, and what it cannot exceed.
+        """Bounds of the largest absolute value of det J - 1: what was found, and what it cannot exceed.
 
         A map with det J = 1 everywhere keeps the volume of whatever it deforms.
         """

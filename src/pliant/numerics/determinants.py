@@ -84,11 +84,16 @@ class Determinants:
         for_chunks(work, len(chosen), 64)
         return out.reshape(-1, *self.shape), self._error(largest)
 
-    def ranges(self, chosen: Integers) -> tuple[Floats, Floats]:
-        """(k,), (k,) rough bounds of det J in some cells, from the ranges of the entries of J."""
+    def ranges(self, chosen: Integers, *, path: float | None = None) -> tuple[Floats, Floats]:
+        """(k,), (k,) rough bounds of det J in some cells, from the ranges of the entries of J.
+
+        With a ``path`` they hold for the displacement times any number from 0 to that one.
+        """
         middle, radius, largest = (np.empty((len(chosen), 3, 3)) for _ in range(3))
         for axis in range(3):
             low, high = self.cells.slope_range(axis, chosen)
+            if path is not None:
+                low, high = path * np.minimum(low, 0.0), path * np.maximum(high, 0.0)
             scale = self._scale[axis]
             middle[:, :, axis] = self._constant[axis] + scale * (low + high) / 2
             radius[:, :, axis] = abs(scale) * (high - low) / 2
@@ -120,7 +125,7 @@ def halve(coefficients: Floats, axis: int) -> tuple[Floats, Floats]:
 
 def halving_error(coefficients: Floats, degree: int) -> Floats:
     """(k,) how much rounding :func:`halve` adds along an axis of some degree."""
-    largest = np.abs(coefficients).reshape(len(coefficients), -1).max(axis=1)
+    largest = np.abs(coefficients).max(axis=tuple(range(1, coefficients.ndim)))
     return np.asarray((degree + 8) * UNIT * 1.01 * largest)
 
 

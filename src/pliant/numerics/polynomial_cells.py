@@ -107,7 +107,8 @@ class PolynomialCells:
         rows = [
             np.arange(size) + step * at[:, None] for size, step, at in zip(sizes, self.stride, corners, strict=True)
         ]
-        return values[rows[0][:, :, None, None], rows[1][:, None, :, None], rows[2][:, None, None, :]]
+        x, y, z = rows
+        return np.asarray(values[x[:, :, None, None], y[:, None, :, None], z[:, None, None, :]])
 
     def position(self, cell: int, local: Floats) -> Floats:
         """(3,) where in space a place (3,) in [0, 1]^3 of a cell is."""
