@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Literal, get_args
 
 import numpy as np
@@ -48,6 +49,17 @@ class ReadOptions:
     def fit_to(self) -> PolygonMesh | None:
         """The mesh to lay the lattice around; None where it lies as the file says."""
         return self.target if self.placement == "fit" else None
+
+    def require_physical(self, path: Path) -> None:
+        """Refuse to fit what lies where its file says.
+
+        Raises
+        ------
+        InvalidParameter
+            ``placement="fit"``.
+        """
+        if self.placement == "fit":
+            raise InvalidParameter(f"{path}: this format says where its map lies: use placement='physical'")
 
 
 def _require_choice(name: str, value: object, choices: tuple[str, ...]) -> None:

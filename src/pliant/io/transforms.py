@@ -1,16 +1,8 @@
-"""Transform files: which format a file is of, and the two functions that users call.
-
-A format is one module of this package with ``read(path, data, options)`` and ``write(deformer, path, strict)``, and
-one line below. Modules are imported when a file of theirs turns up.
-"""
+"""Transform files: the two functions that users call."""
 
 from __future__ import annotations
 
-import re
-from dataclasses import dataclass
-from importlib import import_module
 from pathlib import Path
-from typing import Protocol, cast
 
 from numpy.typing import ArrayLike
 
@@ -18,57 +10,12 @@ from pliant.deformer import Deformer, SpaceDeformer
 from pliant.errors import UnsupportedFormat
 from pliant.io.files import read_bytes
 from pliant.io.report import LossReport
+from pliant.io.transform_formats import FORMATS as FORMATS
+from pliant.io.transform_formats import formats as formats
+from pliant.io.transform_formats import known_endings
+from pliant.io.transform_formats import transform_format as transform_format
 from pliant.io.transform_options import Edge, Placement, ReadOptions, Variant
 from pliant.mesh import PolygonMesh
-
-_HEAD = 4096  # bytes that are enough to tell formats apart
-
-
-class FormatModule(Protocol):
-    """What the module of a format offers."""
-
-    def read(self, path: Path, data: bytes, options: ReadOptions) -> SpaceDeformer:
-        """The deformer that the bytes of a file describe."""
-
-    def write(self, deformer: Deformer, path: Path, *, strict: bool) -> LossReport:
-        """Write the deformer, and tell what the file could not hold."""
-
-
-@dataclass(frozen=True)
-class TransformFormat:
-    """A format: how it is called, how its files end and begin, and the module that knows it."""
-
-    name: str
-    endings: tuple[str, ...]
-    signature: re.Pattern[bytes]
-    module: str
-
-    def load(self) -> FormatModule:
-        """The format's module."""
-        return cast(FormatModule, import_module(f"pliant.io.{self.module}"))
-
-
-FORMATS = (
-    TransformFormat("zxhproj FFD", (".ffd",), re.compile(rb"#\s*control grid size"), "zxhproj_ffd"),
-    TransformFormat("zxhproj AFF", (".aff",), re.compile(rb"#\s*(matrix|rotation center)"), "zxhproj_aff"),
-)
-
-
-def transform_format(path: Path | str, data: bytes = b"") -> TransformFormat | None:
-    """The format of a transform file: by content first, by ending where the content leaves it open.
-
-    Parameters
-    ----------
-    path
-        The file.
-    data
-        Its beginning; without it the ending decides.
-    """
-    name = Path(path).name.lower()
-    by_content = [known for known in FORMATS if known.signature.search(data[:_HEAD])]
-    by_ending = [known for known in FORMATS if name.endswith(known.endings)]
-    both = [known for known in by_content if known in by_ending]
-    return next(iter(both + by_content + by_ending), None)
 
 
 def read_transform(
@@ -82,7 +29,8 @@ def read_transform(
 ) -> SpaceDeformer:
     """The map that a transform file describes.
 
-    The file's function is returned as it stands; its ``direction`` says what its owner uses it for.
+    The file's function is returned as it stands; its ``direction`` says what its owner uses it for. Medical
+    transforms are in RAS, millimetres, whatever the file's own convention is.
 
     Parameters
     ----------
@@ -122,7 +70,7 @@ def read_transform(
     data = read_bytes(path)
     found = transform_format(path, data)
     if found is None:
-        raise UnsupportedFormat(f"{path}: no transform format that pliant reads ({_known_endings()})")
+        raise UnsupportedFormat(f"{path}: no transform format that pliant reads ({known_endings()})")
     return found.load().read(path, data, options)
 
 
@@ -148,9 +96,5 @@ def write_transform(deformer: Deformer, path: Path | str, *, strict: bool = Fals
     path = Path(path)
     found = transform_format(path)
     if found is None:
-        raise UnsupportedFormat(f"{path}: no transform format that pliant writes ({_known_endings()})")
+        raise UnsupportedFormat(f"{path}: no transform format that pliant writes ({known_endings()})")
     return found.load().write(deformer, path, strict=strict)
-
-
-def _known_endings() -> str:
-    return ", ".join(ending for known in FORMATS for ending in known.endings)

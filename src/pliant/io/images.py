@@ -1,0 +1,104 @@
+"""Images of medicine: voxels and where they lie, from NIfTI and MetaImage files.
+
+An image is handed out in RAS, millimetres, whatever its file's convention is.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pliant.errors import UnsupportedFormat
+from pliant.io.files import read_bytes
+from pliant.io.gzipped import beginning
+from pliant.io.report import LossReport
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Image:
+    """A regular grid of voxels in space.
+
+    Parameters
+    ----------
+    values
+        (nx, ny, nz) or (nx, ny, nz, k): numbers of any type, k of them a voxel.
+    origin
+        (3,) the centre of voxel (0, 0, 0), RAS.
+    spacing
+        (3,) distance of the voxels' centres along each axis.
+    axes
+        (3, 3) orthonormal; its columns are the axes of the grid, RAS.
+    carrier
+        What a reader kept of the file. Opaque.
+    """
+
+    values: NDArray[Any]
+    origin: Floats
+    spacing: Floats
+    axes: Floats = field(default_factory=lambda: np.eye(3))
+    carrier: Any = None
+
+    @property
+    def shape(self) -> tuple[int, int, int]:
+        """Numbers of voxels along each axis."""
+        nx, ny, nz = self.values.shape[:3]
+        return nx, ny, nz
+
+
+def is_image(data: bytes) -> bool:
+    """Whether the bytes of a file, compressed or not, begin as an image that pliant reads."""
+    from pliant.io import metaimage, nifti
+
+    head = beginning(data, 4096)
+    return nifti.is_nifti(head) or metaimage.is_metaimage(head)
+
+
+def read_image(path: Path | str) -> Image:
+    """An image from a NIfTI or MetaImage file, told by its content.
+
+    Raises
+    ------
+    UnreadableFile
+        The file is not there, truncated or contradicts itself.
+    UnsupportedFormat
+        No image that pliant reads.
+    MissingExtra
+        NIfTI without nibabel.
+    """
+    from pliant.io import metaimage, nifti
+
+    path = Path(path)
+    data = read_bytes(path)
+    head = beginning(data, 4096)
+    if nifti.is_nifti(head):
+        return nifti.image_of(path, nifti.read_nifti(path, data))
+    if metaimage.is_metaimage(head):
+        return metaimage.read(path, data)
+    raise UnsupportedFormat(f"{path}: no image that pliant reads (.nii, .nii.gz, .mha, .mhd)")
+
+
+def write_image(image: Image, path: Path | str) -> LossReport:
+    """Write an image to the format that the ending names.
+
+    Raises
+    ------
+    UnsupportedFormat
+        Another ending than .nii, .nii.gz, .mha or .mhd.
+    MissingExtra
+        NIfTI without nibabel.
+    """
+    from pliant.io import metaimage, nifti
+
+    path = Path(path)
+    name = path.name.lower()
+    if name.endswith((".nii", ".nii.gz")):
+        return nifti.write_image(image, path)
+    if name.endswith((".mha", ".mhd")):
+        return metaimage.write(image, path)
+    raise UnsupportedFormat(f"{path}: no image format that pliant writes (.nii, .nii.gz, .mha, .mhd)")
