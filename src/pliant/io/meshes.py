@@ -5,18 +5,21 @@ A format is one module and one line of the table below; it is imported when it i
 
 from __future__ import annotations
 
+import gzip
 from collections.abc import Iterator
 from dataclasses import asdict
 from functools import cache
 from importlib import import_module
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 
-from pliant.errors import InvalidMesh, UnsupportedFormat
+from pliant.errors import InvalidMesh, UnreadableFile, UnsupportedFormat
+from pliant.io.carrier import Carrier
 from pliant.io.files import read_bytes, write_bytes
 from pliant.io.format import MeshFormat, Source
+from pliant.io.gzipped import inflated, is_gzipped
 from pliant.io.report import LossReport, refuse_losses
 from pliant.mesh import PolygonMesh
 
@@ -29,8 +32,19 @@ _FORMATS = {  # module and class by ending; files are recognised in this order
 }
 
 
-def read(path: Path | str) -> PolygonMesh:
+_ROOM, _GROWTH = 1 << 26, 100  # bytes that any compressed file may inflate to, and how often its own size
+
+
+def read(file: Path | str | BinaryIO, *, name: str | None = None) -> PolygonMesh:
     """Read a mesh; its format is recognised by what the file holds, and by its ending only where that says nothing.
+
+    Parameters
+    ----------
+    file
+        A path, or a binary stream, which is read to its end; compressed by gzip or not. Files that a stream refers
+        to are not looked for.
+    name
+        What errors call a stream, and what its ending is taken from; its own name if it has one.
 
     Raises
     ------
@@ -39,8 +53,16 @@ def read(path: Path | str) -> PolygonMesh:
     UnsupportedFormat
         The file is of no format that pliant reads.
     """
-    path = Path(path)
-    return read_mesh_bytes(read_bytes(path), path, folder=path.parent)
+    if isinstance(file, (str, Path)):
+        path = Path(file)
+        return read_mesh_bytes(read_bytes(path), name or path, folder=path.parent)
+    data = file.read()
+    known = name or _stream_name(file)
+    if not isinstance(data, bytes):
+        raise UnreadableFile(known, "the stream gives text", "open it as binary: open(path, 'rb')")
+    if not data:
+        raise UnreadableFile(known, "the stream is empty", "rewind it: stream.seek(0)")
+    return read_mesh_bytes(data, known)
 
 
 def read_mesh_bytes(data: bytes, name: Path | str, *, folder: Path | None = None) -> PolygonMesh:
@@ -49,7 +71,7 @@ def read_mesh_bytes(data: bytes, name: Path | str, *, folder: Path | None = None
     Parameters
     ----------
     data
-        The whole file.
+        The whole file, compressed by gzip or not.
     name
         What errors call it; its ending counts where the bytes do not say what they are.
     folder
@@ -60,7 +82,7 @@ def read_mesh_bytes(data: bytes, name: Path | str, *, folder: Path | None = None
     UnreadableFile, UnsupportedFormat
         As :func:`read`.
     """
-    source = Source(data, name, folder)
+    source = Source(_inflated(data, name), _plain(name), folder)
     try:
         mesh = _recognised(source).read(source)
     except InvalidMesh as error:
@@ -68,8 +90,10 @@ def read_mesh_bytes(data: bytes, name: Path | str, *, folder: Path | None = None
     return mesh.replace(source=Path(name))
 
 
-def write(mesh: PolygonMesh, path: Path | str, *, strict: bool = False) -> LossReport:
-    """Write a mesh in the format that the path's ending names.
+def write(
+    mesh: PolygonMesh, file: Path | str | BinaryIO, *, name: str | None = None, strict: bool = False
+) -> LossReport:
+    """Write a mesh in the format that the ending names; a further ``.gz`` compresses it.
 
     A mesh written in the format that it was read from differs in its positions, and in stored normals, only.
 
@@ -77,8 +101,10 @@ def write(mesh: PolygonMesh, path: Path | str, *, strict: bool = False) -> LossR
     ----------
     mesh
         The mesh.
-    path
-        Where to; an existing file is replaced once the new one is complete.
+    file
+        Where to: a path, whose file is replaced once the new one is complete, or a binary stream.
+    name
+        Whose ending names the format of a stream.
     strict
         Refuse to write what the format cannot hold in full.
 
@@ -94,20 +120,24 @@ def write(mesh: PolygonMesh, path: Path | str, *, strict: bool = False) -> LossR
     LossRefused
         Something would be lost, and ``strict`` is set; nothing is written.
     """
-    path = Path(path)
-    target = _by_suffix(path)
-    if target is None:
-        endings = ", ".join(ending for endings in _FORMATS.values() for ending in endings)
-        raise UnsupportedFormat(f"{path}: no mesh format has the ending {path.suffix!r}; there are {endings}")
+    path = Path(file) if isinstance(file, (str, Path)) else Path(name or _stream_name(file))
+    plain = Path(_plain(path))
+    target = _writer(plain, mesh)
     empty = np.flatnonzero(mesh.faces.lengths == 0)
     if len(empty):
         raise UnsupportedFormat(f"face {empty[0]} has no corners, and no file can say so: remove it")
-    encoded = target.encode(mesh, path)
-    refuse_losses(encoded.losses, path, strict=strict)
-    for companion, data in encoded.companions.items():
-        write_bytes(companion, data)
-    write_bytes(path, encoded.parts)
-    return LossReport(path, target.name, encoded.losses, encoded.notes)
+    encoded = target.encode(mesh, plain)
+    parts = [gzip.compress(b"".join(encoded.parts), 6, mtime=0)] if plain != path else encoded.parts
+    if isinstance(file, (str, Path)):
+        refuse_losses(encoded.losses, path, strict=strict)
+        for companion, data in encoded.companions.items():
+            write_bytes(companion, data)
+        write_bytes(path, parts)
+        return LossReport(path, target.name, encoded.losses, encoded.notes)
+    losses = (*encoded.losses, *(f"the file {each.name!r} that belongs beside it" for each in encoded.companions))
+    refuse_losses(losses, path, strict=strict)
+    file.writelines(parts)
+    return LossReport(path, target.name, losses, encoded.notes)
 
 
 def formats() -> list[dict[str, Any]]:
@@ -126,13 +156,53 @@ def _all() -> Iterator[MeshFormat]:
     return (_format(place) for place in _FORMATS)
 
 
-def _by_suffix(path: Path | str) -> MeshFormat | None:
+def _stream_name(stream: BinaryIO) -> str:
+    name = getattr(stream, "name", None)
+    return name if isinstance(name, str) else "stream"
+
+
+def _plain(name: Path | str) -> Path | str:
+    """A name without the ending of compressed files."""
+    return type(name)(str(name)[:-3]) if str(name).lower().endswith(".gz") else name
+
+
+def _inflated(data: bytes, name: Path | str) -> bytes:
+    """What a file holds, compressed or not.
+
+    Raises
+    ------
+    UnreadableFile
+        Damaged compression, or more than any honest mesh inflates to.
+    """
+    if not is_gzipped(data):
+        return data
+    most = _ROOM + _GROWTH * len(data)
+    whole = inflated(Path(name), data, most + 1)
+    if len(whole) > most:
+        cause = f"{len(data):,} compressed bytes inflate to more than {most:,}"
+        raise UnreadableFile(name, cause, "if that is meant, decompress the file yourself and read what comes out")
+    return whole
+
+
+def _by_suffix(path: Path | str) -> list[MeshFormat]:
+    """The formats that know an ending, the usual one first."""
     ending = Path(path).suffix.lower()
-    return next((_format(place) for place, endings in _FORMATS.items() if ending in endings), None)
+    return [_format(place) for place, endings in _FORMATS.items() if ending in endings]
+
+
+def _writer(path: Path, mesh: PolygonMesh) -> MeshFormat:
+    """The format of an ending: the mesh's own if that is among those that have it."""
+    found = _by_suffix(path)
+    if not found:
+        endings = ", ".join(dict.fromkeys(ending for endings in _FORMATS.values() for ending in endings))
+        raise UnsupportedFormat(f"{path}: no mesh format has the ending {path.suffix!r}; there are {endings}")
+    own = mesh.carrier.format if isinstance(mesh.carrier, Carrier) else None
+    return next((each for each in found if each.name == own), found[0])
 
 
 def _recognised(source: Source) -> MeshFormat:
-    found = next((each for each in _all() if each.sniff(source.data)), None) or _by_suffix(source.name)
+    candidates = [each for each in _all() if each.sniff(source.data)] or _by_suffix(source.name)
+    found = candidates[0] if candidates else None
     if found is None:
         names = ", ".join(each.name for each in _all())
         raise UnsupportedFormat(f"{source.name}: neither its bytes nor its ending say what it is; pliant reads {names}")
