@@ -32,3 +32,5 @@ from .space.tangent_frames import TangentFrames as TangentFrames
 from .space.taper import Taper as Taper
 from .space.twist import Twist as Twist
 from .space.wave import Wave as Wave
+from .surface.arap import ARAP as ARAP
+from .surface.laplacian_edit import LaplacianEdit as LaplacianEdit

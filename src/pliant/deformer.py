@@ -112,6 +112,15 @@ class SpaceDeformer(Deformer):
         return _carry_corners(jacobian, mesh.normals, mesh.faces.flat)
 
 
+class MeshDeformer(Deformer):
+    """A deformation of a mesh through its own geometry. Where its controls rest, only its bindings know."""
+
+    @property
+    def rest(self) -> Controls:
+        """Not known without a mesh: ask a binding."""
+        raise InvalidTarget(f"a {type(self).__name__} rests where its mesh does: bind it, and ask the binding for rest")
+
+
 class Binding(ABC):
     """A deformer bound to a target. Immutable, thread-safe, and it pickles."""
 

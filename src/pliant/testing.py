@@ -9,8 +9,9 @@ from concurrent.futures import ThreadPoolExecutor
 import numpy as np
 from numpy.typing import NDArray
 
-from pliant.deformer import Binding, Deformer, LinearBinding, SpaceDeformer, Target
-from pliant.errors import NotDifferentiable
+from pliant.deformer import Binding, Deformer, Drag, LinearBinding, MeshDeformer, SpaceDeformer, Target
+from pliant.errors import InvalidTarget, NotDifferentiable
+from pliant.iterative import IterativeBinding, IterativeDrag
 from pliant.mesh import Points, PolygonMesh, as_points
 
 Floats = NDArray[np.float64]
@@ -35,7 +36,8 @@ def check_deformer(
     Parameters
     ----------
     deformer
-        With controls away from rest, so that there is something to see.
+        With controls away from rest, so that there is something to see. One that lives on a mesh rests where its
+        binding says; one that iterates may drag to another minimum, but not to a higher one.
     target
         A mesh, or (n, 3) points for a space deformer; a few hundred points are enough.
     seed
@@ -57,6 +59,8 @@ def check_deformer(
     _check_rest(deformer, binding, target, points if rest_image is None else rest_image, scale)
     _check_calls(deformer, binding, target, scale)
     _check_nothing_changes(deformer, binding, points)
+    if isinstance(deformer, MeshDeformer):
+        _check_needs_a_mesh(deformer, points)
     _check_derivatives(binding, random, scale)
     _check_drag(binding, random, scale)
     _check_pickling_and_threads(deformer, binding, target)
@@ -78,9 +82,19 @@ def _close(one: Floats, two: Floats, tolerance: float, law: str) -> None:
 
 
 def _check_rest(deformer: Deformer, binding: Binding, target: Target, image: Points, scale: float) -> None:
-    assert np.array_equal(binding.rest, deformer.rest), "a binding rests where its deformer does"
-    _close(binding.deform(deformer.rest), image, 1e-12 * scale, "at rest every point is where it should be")
-    _close(deformer.moved(deformer.rest).bind(target).deform(), image, 1e-12 * scale, "moved to rest is at rest")
+    rest = binding.rest
+    if not isinstance(deformer, MeshDeformer):
+        assert np.array_equal(rest, deformer.rest), "a binding rests where its deformer does"
+    _close(binding.deform(rest), image, 1e-12 * scale, "at rest every point is where it should be")
+    _close(deformer.moved(rest).bind(target).deform(), image, 1e-12 * scale, "moved to rest is at rest")
+
+
+def _check_needs_a_mesh(deformer: MeshDeformer, points: Points) -> None:
+    try:
+        deformer.bind(points)
+    except InvalidTarget:
+        return
+    raise AssertionError("bare points are refused")
 
 
 def _check_calls(deformer: Deformer, binding: Binding, target: Target, scale: float) -> None:
@@ -143,11 +157,20 @@ def _check_drag(binding: Binding, random: np.random.Generator, scale: float) -> 
         rows[chosen] += random.normal(size=rows[chosen].shape) * step
         before = drag.points.copy()
         touched = drag.update(controls, changed=[np.unravel_index(i, lead) for i in chosen])
-        _close(drag.points, binding.deform(controls), 1e-10 * scale, "a drag agrees with deform")
+        _check_dragged(drag, binding, controls, scale)
         moved = np.flatnonzero((drag.points != before).any(axis=1))
         assert np.isin(moved, touched).all(), "a drag names every point that it moved"
     assert not len(drag.update(controls, changed=[])), "nothing changed, nothing touched"
     assert not drag.points.flags.writeable, "a drag's points are read-only"
+
+
+def _check_dragged(drag: Drag, binding: Binding, controls: Floats, scale: float) -> None:
+    if isinstance(drag, IterativeDrag) and isinstance(binding, IterativeBinding):
+        assert drag.solution is not None, "a drag gives an account"
+        anew = binding.solve(controls).energy
+        assert drag.solution.energy <= 1.01 * anew, "a drag ends about as low as deform does"
+    else:
+        _close(drag.points, binding.deform(controls), 1e-10 * scale, "a drag agrees with deform")
 
 
 def _check_pickling_and_threads(deformer: Deformer, binding: Binding, target: Target) -> None:

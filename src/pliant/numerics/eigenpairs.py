@@ -53,37 +53,57 @@ def lowest_eigenpairs(stiffness: Any, mass: Floats, count: int, *, tolerance: fl
     scaled = csc_array(diags_array(1 / root) @ stiffness @ diags_array(1 / root))
     size = len(mass)
     if size <= max(60, 4 * count):
-        values, vectors = np.linalg.eigh(scaled.toarray())
-        return _finished(values[:count], vectors[:, :count], root)
-    shift = 1e-2 * float(scaled.diagonal().mean()) * count / size  # between the eigenvalues wanted, Weyl's law says
-    factor = Cholesky(scaled + diags_array(np.full(size, shift)))
-    basis, products = np.empty((size, 0)), np.empty((size, 0))
-    block = np.random.default_rng(1).normal(size=(size, _BLOCK))
-    while basis.shape[1] < min(size, 40 * count + 200):
-        block = _orthogonal_to(basis, block)
-        basis = np.hstack([basis, block])
-        block = factor.solve(block)
-        products = np.hstack([products, block])
-        if basis.shape[1] >= 2 * count and basis.shape[1] % (2 * _BLOCK) == 0:
-            projected = basis.T @ products
-            inverse, rotation = eigh((projected + projected.T) / 2)
-            inverse, rotation = inverse[::-1][:count], rotation[:, ::-1][:, :count]
-            values = 1 / inverse - shift
-            vectors = basis @ rotation
-            if (np.linalg.norm(products @ rotation - vectors * inverse, axis=0) / inverse**2).max() > 1e3 * values[-1]:
-                continue
-            residual = np.linalg.norm(scaled @ vectors - vectors * values, axis=0)
-            if residual.max() <= tolerance * values[-1]:
-                return _finished(values, vectors, root)
+        every, dense = np.linalg.eigh(scaled.toarray())
+        return _finished(every[:count], dense[:, :count], root)
+    shift = 1e-2 * float(scaled.diagonal().mean()) * count / size  # far below the eigenvalues wanted (Weyl's law)
+    krylov = _Krylov(Cholesky(scaled + diags_array(np.full(size, shift))), min(size, 40 * count + 200))
+    while krylov.extend():
+        if krylov.width < 2 * count or krylov.width % (4 * _BLOCK):
+            continue
+        inverse, found = krylov.largest(count, tolerance)
+        if found is None:
+            continue
+        values = 1 / inverse - shift
+        residual = np.linalg.norm(scaled @ found - found * values, axis=0)
+        if residual.max() <= tolerance * values[-1]:
+            return _finished(values, found, root)
     raise NotConverged(f"{count} eigenpairs of {size:,} unknowns were not found; ask for fewer")
 
 
-def _orthogonal_to(basis: Floats, block: Floats) -> Floats:
-    """The block, orthonormal and orthogonal to the basis: twice is enough (Kahan & Parlett)."""
-    for _ in range(2):
-        block = block - basis @ (basis.T @ block)
-        block = np.linalg.qr(block)[0]
-    return block
+class _Krylov:
+    """An orthonormal basis Q of a block Krylov space of A^-1, and T = Q^T A^-1 Q."""
+
+    def __init__(self, factor: Cholesky, room: int) -> None:
+        self._factor, self.width = factor, 0
+        self._basis = np.empty((factor.size, room), order="F")
+        self._projected = np.zeros((room, room))
+        self._next = np.linalg.qr(np.random.default_rng(1).normal(size=(factor.size, _BLOCK)))[0]
+        self._coupling = np.zeros((_BLOCK, _BLOCK))
+
+    def extend(self) -> bool:
+        """Take in one more block; False where there is no room."""
+        begin, end = self.width, self.width + _BLOCK
+        if end > self._basis.shape[1]:
+            return False
+        self._basis[:, begin:end] = self._next
+        self.width = end
+        basis, block = self._basis[:, :end], self._factor.solve(self._next)
+        for _ in range(2):  # orthogonal to working precision: twice is enough (Kahan and Parlett)
+            share = basis.T @ block
+            block -= basis @ share
+            self._projected[:end, begin:end] += share
+        self._next, self._coupling = np.linalg.qr(block)
+        return True
+
+    def largest(self, count: int, tolerance: float) -> tuple[Floats, Floats | None]:
+        """The largest eigenvalues of A^-1, descending, and their vectors, once the space holds them well enough."""
+        projected = self._projected[: self.width, : self.width]
+        values, rotation = eigh(projected, lower=False)
+        values, rotation = values[::-1][:count], rotation[:, ::-1][:, :count]
+        residual = np.linalg.norm(self._coupling @ rotation[-_BLOCK:], axis=0)
+        if (residual > tolerance * values).any():
+            return values, None
+        return values, self._basis[:, : self.width] @ rotation
 
 
 def _finished(values: Floats, vectors: Floats, root: Floats) -> tuple[Floats, Floats]:

@@ -47,7 +47,7 @@ def intrinsic_weights(points: Floats, triangles: Triangles) -> csr_array:
     """
     import robust_laplacian
 
-    used, sound = _compact(points, triangles)
+    used, sound = _compact(triangles)
     if not len(sound):
         return csr_array((len(points), len(points)))
     stiffness, _ = robust_laplacian.mesh_laplacian(np.ascontiguousarray(points[used]), sound)
@@ -133,7 +133,7 @@ def _symmetric(edges: Any, values: Floats, count: int) -> csr_array:
     return matrix
 
 
-def _compact(points: Floats, triangles: Triangles) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
+def _compact(triangles: Triangles) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """The vertices that proper triangles use, and those triangles in terms of them."""
     a, b, c = triangles.T
     proper = triangles[(a != b) & (b != c) & (c != a)]

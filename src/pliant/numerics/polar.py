@@ -116,7 +116,11 @@ def nearest_rotation(s, r, horn, vectors):
 def _orthonormalize(r):
     """One Newton-Schulz step, R (3 - R^T R) / 2: squares what is missing to a rotation."""
     a, b, c, d, e, f, g, h, i = r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8]
-    aa, bb, cc = 1.5 - 0.5 * (a * a + d * d + g * g), 1.5 - 0.5 * (b * b + e * e + h * h), 1.5 - 0.5 * (c * c + f * f + i * i)
+    aa, bb, cc = (
+        1.5 - 0.5 * (a * a + d * d + g * g),
+        1.5 - 0.5 * (b * b + e * e + h * h),
+        1.5 - 0.5 * (c * c + f * f + i * i),
+    )
     ab, ac, bc = -0.5 * (a * b + d * e + g * h), -0.5 * (a * c + d * f + g * i), -0.5 * (b * c + e * f + h * i)
     r[0], r[1], r[2] = a * aa + b * ab + c * ac, a * ab + b * bb + c * bc, a * ac + b * bc + c * cc
     r[3], r[4], r[5] = d * aa + e * ab + f * ac, d * ab + e * bb + f * bc, d * ac + e * bc + f * cc

@@ -1,0 +1,1 @@
+"""Surface deformers: a mesh edits itself."""
