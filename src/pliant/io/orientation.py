@@ -12,12 +12,15 @@ from pliant.errors import PliantWarning, UnreadableFile
 
 Floats = NDArray[np.float64]
 
-_EXACT = 1e-6
+_EXACT = 1e-14
+_ROUNDING = 1e-6
 _NEAR = 1e-3
 
 
 def orthonormal(path: Path, axes: Floats) -> Floats:
-    """Axes as orthonormal columns; those that are nearly so become the nearest that are, with a warning.
+    """Axes as orthonormal columns; those that are nearly so become the nearest that are.
+
+    Rounding, as of axes in single precision, is mended in silence, more with a warning.
 
     Raises
     ------
@@ -34,8 +37,9 @@ def orthonormal(path: Path, axes: Floats) -> Floats:
             "pliant's lattices are not sheared: resample the file to orthogonal axes",
         )
     u, _, v = np.linalg.svd(axes)
-    message = f"{path}: the axes are orthonormal to {off:.2g} only; the nearest orthonormal ones are taken"
-    warnings.warn(message, PliantWarning, stacklevel=2)
+    if off > _ROUNDING:
+        message = f"{path}: the axes are orthonormal to {off:.2g} only; the nearest orthonormal ones are taken"
+        warnings.warn(message, PliantWarning, stacklevel=2)
     return np.asarray(u @ v, np.float64)
 
 
