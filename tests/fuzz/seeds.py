@@ -43,6 +43,8 @@ OFF_ALL = b"""STCNOFF 3 1 0
 3 0 1 2 1 0 0
 """
 
+OFF_LOOSE = b"OFF 5\n2 0 # counts\n0 0\n0 1 0 0 1 1\n0 0 1 0 .5 .5 1\n4 0 1\n2 3 255 0 0\n3 0 1 4 0 255 0\n"
+
 STL_TEXT = b"""solid two of them
 facet normal 0 0 1
  outer loop
@@ -126,11 +128,20 @@ def ply_strips() -> bytes:
     return head + np.arange(15.0).tobytes() + struct.pack(f"<i{len(strip)}i", len(strip), *strip)
 
 
+def off_binary() -> bytes:
+    """A binary OFF with normals whose faces differ in length."""
+    vertices = np.array([[0, 0, 0, 0, 0, 1], [1, 0, 0, 0, 0, 1], [1, 1, 0, 0, 0, 1], [0, 1, 0, 0, 0, 1]], ">f4")
+    faces = struct.pack(">5i3f", 3, 0, 1, 2, 3, 1, 0, 0) + struct.pack(">6i3f", 4, 0, 1, 2, 3, 3, 0, 1, 0)
+    return b"NOFF BINARY\n" + struct.pack(">3i", 4, 2, 0) + vertices.tobytes() + faces
+
+
 SEEDS = {
     "obj": OBJ,
     "obj-colors": OBJ_COLORS,
     "off": OFF,
     "off-all": OFF_ALL,
+    "off-loose": OFF_LOOSE,
+    "off-binary": off_binary(),
     "stl-text": STL_TEXT,
     "stl-binary": stl_binary(),
     "ply-text": PLY_TEXT,

@@ -6,7 +6,7 @@ import pytest
 import pliant as pl
 from pliant.errors import PliantWarning, UnreadableFile
 from pliant.io.meshes import read_mesh_bytes
-from pliant.mesh import CornerValues
+from pliant.mesh import CornerValues, FaceLabels, PolygonMesh
 
 CUBE = b"""# exported by hand
 mtllib my materials.mtl
@@ -212,3 +212,23 @@ def test_a_deformed_mesh_keeps_its_file_but_for_positions_and_normals(cube, tmp_
         line for line in (tmp_path / "bent.obj").read_bytes().splitlines() if not line.startswith((b"v ", b"vn", b"f"))
     ]
     assert now == kept
+
+
+def test_names_that_no_line_can_say_are_told_of(tmp_path):
+    labels = FaceLabels(("two\nlines", "back\\"), [0, 1])
+    mesh = PolygonMesh(np.eye(3), [[0, 1, 2], [2, 1, 0]], groups=labels)
+    losses = pl.write(mesh, tmp_path / "a.obj").losses
+    assert losses == (r"the name 'two\nlines' is written as 'two lines'", r"the name 'back\\' is written as 'back_'")
+    again = pl.read(tmp_path / "a.obj")
+    assert again.groups.names == ("two lines", "back_")
+    assert again.faces.flat.tolist() == mesh.faces.flat.tolist()
+
+
+def test_points_and_the_coordinates_of_lines_are_lost_elsewhere(tmp_path):
+    text = b"v 0 0 0\nv 1 0 0\nvt 0 0\nvt 1 1\nl 1/1 2/2\np 1 2\n"
+    (tmp_path / "a.obj").write_bytes(text)
+    mesh = pl.read(tmp_path / "a.obj")
+    assert not pl.write(mesh, tmp_path / "b.obj").losses
+    losses = pl.write(mesh, tmp_path / "b.ply").losses
+    assert "2 texture coordinates of lines" in losses
+    assert "1 points, curves or surfaces that are no polygons" in losses

@@ -26,7 +26,7 @@ from pliant.mesh import PolygonMesh
 _FORMATS = {  # module and class by ending; files are recognised in this order
     "pliant.io.ply:Ply": (".ply",),
     "pliant.io.polydata:PolyData": (".vtp", ".vtk"),
-    "pliant.io.off:Off": (".off", ".coff", ".noff", ".stoff"),
+    "pliant.io.off:Off": (".off", ".coff", ".noff", ".stoff", ".cnoff", ".stcnoff"),
     "pliant.io.stl:Stl": (".stl",),
     "pliant.io.obj:Obj": (".obj",),
 }

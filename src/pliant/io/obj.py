@@ -14,8 +14,9 @@ from pliant.errors import PliantWarning
 from pliant.io import mtl, obj_writer
 from pliant.io.carrier import carrier_of, with_carrier
 from pliant.io.format import Encoded, Keeps, MeshFormat, Source
+from pliant.io.obj_elements import parse_elements, require_numbers
 from pliant.io.obj_writer import Layout
-from pliant.io.text import Lines, Offsets, count_words, keyword, plain_text, read_numbers, shown, text_of
+from pliant.io.text import Lines, Offsets, keyword, plain_text, read_numbers, shown, text_of
 from pliant.mesh import CornerValues, FaceLabels, PolygonMesh
 from pliant.numerics.ragged import Ragged
 
@@ -80,6 +81,8 @@ class Obj(MeshFormat):
             lines=Ragged(flat_lines[0], line_offsets) if len(line_offsets) > 1 else None,
         )
         layout = Layout(starts, normals, normal_starts, tuple(libraries))
+        if count := int((flat_lines[1] >= 0).sum()):
+            unique = (*unique, f"{count:,} texture coordinates of lines")
         return with_carrier(mesh, self.name, source.data, layout, unique)
 
     def encode(self, mesh: PolygonMesh, path: Path) -> Encoded:
@@ -114,7 +117,7 @@ def _warn_of_others(source: Source, lines: Lines, rows: dict[str, Offsets]) -> t
 def _vertices(source: Source, lines: Lines) -> tuple[NDArray[np.float64], Offsets, dict[str, Any]]:
     """(n, 3) positions, (n, 3) where they stand, and what else the vertices say: colours or weights."""
     numbers = read_numbers(source, lines, 3)
-    _require(source, lines, numbers.counts, 3, "vertex")
+    require_numbers(source, lines, numbers.counts, 3, "vertex")
     points, starts = numbers.values.reshape(-1, 3), numbers.starts.reshape(-1, 3)
     most = int(numbers.counts.max())
     if most == 3:
@@ -128,17 +131,10 @@ def _vertices(source: Source, lines: Lines) -> tuple[NDArray[np.float64], Offset
 def _pool(source: Source, lines: Lines, least: int) -> tuple[NDArray[np.float64], Offsets]:
     """A pool of texture coordinates or normals, and where its numbers stand."""
     numbers = read_numbers(source, lines, 3)
-    _require(source, lines, numbers.counts, least, "texture coordinate" if least == 1 else "normal")
+    require_numbers(source, lines, numbers.counts, least, "texture coordinate" if least == 1 else "normal")
     values = numbers.values.reshape(-1, 3)
     flat = least == 1 and not (numbers.counts > 2).any()
     return values[:, :2] if flat else values, numbers.starts.reshape(-1, 3)
-
-
-def _require(source: Source, lines: Lines, counts: Offsets, least: int, what: str) -> None:
-    short = np.flatnonzero(counts < least)
-    if len(short):
-        cause = f"a {what} has {counts[short[0]]} numbers; {least} are needed"
-        raise source.unreadable(cause, "complete or remove the line", at=int(lines.start[short[0]]))
 
 
 def _corners(
@@ -164,28 +160,6 @@ def _corners(
             raise source.unreadable(cause, "the file is cut off, or its indices are wrong: export it again", at=line)
         result.append((index - 1).astype(np.int32))
     return result, offsets
-
-
-def parse_elements(source: Source, lines: Lines) -> tuple[NDArray[np.int32], Offsets, Offsets]:
-    """(c, 3) the indices of faces as they stand, 0 where there is none; where the normals' stand; the offsets."""
-    from pliant.io.text_kernels import parse_corners
-    from pliant.numerics.chunks import for_chunks
-
-    counts = count_words(source, lines)
-    _require(source, lines, counts, 1, "face or line")
-    offsets = np.concatenate([[0], np.cumsum(counts)])
-    table, normals = np.empty((offsets[-1], 3), np.int32), np.empty(offsets[-1], np.int64)
-    wrong: list[int] = []
-
-    def work(first: int, stop: int) -> None:
-        wrong.append(parse_corners(lines.octets, lines.body, lines.end, offsets, first, stop, table, normals))
-
-    for_chunks(work, len(lines))
-    if any(at >= 0 for at in wrong):
-        at = min(at for at in wrong if at >= 0)
-        word = lines.text[at : at + 40].split()[0]
-        raise source.unreadable(f"{word!r} is no corner of a face", "v, v/vt, v//vn or v/vt/vn is needed", at=at)
-    return table, normals, offsets
 
 
 def _states(lines: Lines, word: bytes, faces: Offsets) -> tuple[list[str], NDArray[np.int32]]:

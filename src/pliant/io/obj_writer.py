@@ -14,6 +14,8 @@ from pliant.io.carrier import Carrier
 from pliant.io.colors import as_float
 from pliant.io.format import Encoded, MeshFormat, Source
 from pliant.io.losses import losses_of
+from pliant.io.obj_elements import parse_elements
+from pliant.io.obj_names import writable_names
 from pliant.io.text import (
     Lines,
     Offsets,
@@ -66,8 +68,6 @@ def same_file(mesh: PolygonMesh, carrier: Carrier, path: Path) -> Encoded:
 
 def _with_normals(mesh: PolygonMesh, carrier: Carrier) -> memoryview:
     """Another pool of normals: more 'vn' lines behind the last one, and other normal indices in the 'f' lines."""
-    from pliant.io.obj import parse_elements
-
     layout: Layout = carrier.layout
     normals = mesh.normals
     assert normals is not None
@@ -108,8 +108,9 @@ def _notes(missing: list[str]) -> tuple[str, ...]:
     return tuple(f"the picture {shown(name)!r} that a material names was not found" for name in missing)
 
 
-def new_file(mesh: PolygonMesh, target: MeshFormat, path: Path) -> Encoded:
+def new_file(given: PolygonMesh, target: MeshFormat, path: Path) -> Encoded:
     """A file written from the mesh alone."""
+    mesh, losses = writable_names(given)
     parts: list[bytes] = []
     files: dict[Path, bytes] = {}
     notes: tuple[str, ...] = ()
@@ -133,7 +134,8 @@ def new_file(mesh: PolygonMesh, target: MeshFormat, path: Path) -> Encoded:
     parts += _faces(mesh, normals)
     if mesh.lines is not None:
         parts.append(ragged_text(Ragged(mesh.lines.flat + 1, mesh.lines.offsets), b"l "))
-    return Encoded(parts, losses_of(mesh, target.keeps, known_faces=("smoothing",)), notes, files)
+    losses += losses_of(mesh, target.keeps, known_faces=("smoothing",))
+    return Encoded(parts, losses, notes, files)
 
 
 def _faces(mesh: PolygonMesh, normals: CornerValues | None) -> list[bytes]:

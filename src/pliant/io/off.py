@@ -10,11 +10,14 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pliant.errors import UnsupportedFormat
+from pliant.errors import UnreadableFile, UnsupportedFormat
+from pliant.io import off_binary, ply_writer
 from pliant.io.carrier import carrier_of, with_carrier
 from pliant.io.colors import as_float, is_color
 from pliant.io.format import Encoded, Keeps, MeshFormat, Source
 from pliant.io.losses import losses_of, per_vertex
+from pliant.io.off_loose import loose_lines
+from pliant.io.ply_writer import Layout as BinaryLayout
 from pliant.io.text import Lines, Offsets, count_words, patched, plain_text, ragged_text, read_numbers, rows_text
 from pliant.mesh import CornerValues, PolygonMesh
 from pliant.numerics.ragged import Ragged
@@ -31,10 +34,10 @@ class Layout:
 
 
 class Off(MeshFormat):
-    """OFF with the prefixes ST, C and N."""
+    """OFF with the prefixes ST, C and N, as text or binary."""
 
     name = "OFF"
-    suffixes = (".off", ".coff", ".noff", ".stoff")
+    suffixes = (".off", ".coff", ".noff", ".stoff", ".cnoff", ".stcnoff")
     keeps = Keeps(polygons=True, vertex_normals=True, vertex_colors=True, face_colors=True)
 
     def sniff(self, data: bytes) -> bool:
@@ -46,24 +49,14 @@ class Off(MeshFormat):
         header = _HEADER.match(source.data)
         if header is None:
             raise source.unreadable("the file does not begin with OFF", "check what it is", at=0)
-        if header[2] or header[3]:
-            kind = (header[1] + header[2] + b"OFF" + (header[3] or b"")).decode()
-            raise UnsupportedFormat(f"{source.name}: {kind} is not read; save it as plain OFF")
-        lines = Lines.of(plain_text(source), header.end())
-        vertices, faces = _counts(source, lines)
-        body = lines[1:]
-        if len(body) < vertices + faces:
-            cause = f"{vertices + faces:,} lines of vertices and faces are announced; {len(body):,} follow"
-            raise source.unreadable(cause, "the file is cut off: copy or export it again", at=len(source.data))
-        points, layout, attributes, uvs = _vertices(source, body[:vertices], header[1])
-        polygons, colors = _faces(source, body[vertices : vertices + faces], vertices)
-        mesh = PolygonMesh(
-            points,
-            polygons,
-            uvs=None if uvs is None else CornerValues(uvs, polygons.flat),
-            vertex_attributes=attributes,
-            face_attributes=colors,
-        )
+        if header[2]:
+            kind = (header[1] + header[2] + b"OFF").decode()
+            raise UnsupportedFormat(f"{source.name}: {kind} is not of three dimensions; save it as plain OFF")
+        layout: Layout | BinaryLayout
+        if header[3]:
+            mesh, layout = off_binary.read(source, header[1], header.end())
+        else:
+            mesh, layout = _text(source, header[1], header.end())
         return with_carrier(mesh, self.name, source.data, layout)
 
     def encode(self, mesh: PolygonMesh, path: Path) -> Encoded:
@@ -71,13 +64,50 @@ class Off(MeshFormat):
         carrier = carrier_of(mesh, self.name)
         if carrier is None:
             return _new_file(mesh, self.keeps)
-        layout: Layout = carrier.layout
+        layout: Layout | BinaryLayout = carrier.layout
+        if isinstance(layout, BinaryLayout):
+            return ply_writer.same_file(mesh, carrier)
         starts, old, new = [layout.points.ravel()], [carrier.mesh.points.ravel()], [mesh.points.ravel()]
         if layout.normals is not None:
             starts.append(layout.normals.ravel())
             old.append(carrier.mesh.vertex_attributes["normals"].ravel())
             new.append(np.asarray(mesh.vertex_attributes["normals"], np.float64).ravel())
         return Encoded([patched(carrier.data, np.concatenate(starts), np.concatenate(old), np.concatenate(new))])
+
+
+def _text(source: Source, prefix: bytes, begin: int) -> tuple[PolygonMesh, Layout]:
+    """The mesh of a text: a vertex or face in each line, or in any layout if that does not add up."""
+    text = plain_text(source)
+    lines = Lines.of(text, begin)
+    try:
+        return _mesh(source, prefix, *_counts(source, lines), lines[1:])
+    except UnreadableFile:
+        least = _needed(prefix)
+        loose = loose_lines(source, text, begin, (least + 1, least) if b"C" in prefix else (least,))
+        if loose is None:
+            raise
+        return _mesh(source, prefix, *loose)
+
+
+def _mesh(source: Source, prefix: bytes, vertices: int, faces: int, body: Lines) -> tuple[PolygonMesh, Layout]:
+    if len(body) < vertices + faces:
+        cause = f"{vertices + faces:,} lines of vertices and faces are announced; {len(body):,} follow"
+        raise source.unreadable(cause, "the file is cut off: copy or export it again", at=len(source.data))
+    points, layout, attributes, uvs = _vertices(source, body[:vertices], prefix)
+    polygons, colors = _faces(source, body[vertices : vertices + faces], vertices)
+    mesh = PolygonMesh(
+        points,
+        polygons,
+        uvs=None if uvs is None else CornerValues(uvs, polygons.flat),
+        vertex_attributes=attributes,
+        face_attributes=colors,
+    )
+    return mesh, layout
+
+
+def _needed(prefix: bytes) -> int:
+    """How many numbers a vertex has at least."""
+    return 3 + 3 * (b"N" in prefix) + 3 * (b"C" in prefix) + 2 * (b"ST" in prefix)
 
 
 def _counts(source: Source, lines: Lines) -> tuple[int, int]:
@@ -103,7 +133,7 @@ def _vertices(
     """Positions, where they stand, normals and colours by name, and texture coordinates."""
     counts = count_words(source, lines, body=False)
     columns = int(counts.min(initial=len(counts) and 2**31))
-    needed = 3 + 3 * (b"N" in prefix) + 3 * (b"C" in prefix) + 2 * (b"ST" in prefix)
+    needed = _needed(prefix)
     if len(lines) and columns < needed:
         at = int(lines.start[np.argmin(counts)])
         raise source.unreadable(f"a vertex has {columns} numbers; {needed} are needed", "complete the line", at=at)

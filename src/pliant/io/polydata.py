@@ -163,4 +163,5 @@ def _unique(cells: Mapping[str, Ragged], meta: Mapping[str, Any]) -> tuple[str, 
         found.append("the cell data of points and lines")
     if meta["names"]["field"]:
         found.append(f"{len(meta['names']['field'])} arrays of field data")
+    found += [f"the text array {name!r}" for name in meta["skipped"]]
     return tuple(found)
