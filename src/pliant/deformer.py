@@ -16,7 +16,7 @@ from scipy.sparse.linalg import LinearOperator
 
 from pliant.errors import InvalidControls, InvalidTarget, NonFiniteResult
 from pliant.mesh import CornerValues, Points, PolygonMesh, as_points
-from pliant.numerics.newton import invert
+from pliant.numerics.newton import Solution, solve
 from pliant.numerics.normals import carry_normals
 
 Controls = NDArray[np.float64]
@@ -99,8 +99,11 @@ class SpaceDeformer(Deformer):
             Some points have no pre-image that Newton's method finds, or lie where the map folds; they are
             counted and the first is named.
         """
-        images = as_points(points)
-        return invert(self._deformed, self.jacobian, images, tolerance=tolerance, iterations=iterations)
+        return self._solved(as_points(points), tolerance, iterations).required()
+
+    def _solved(self, images: Points, tolerance: float, iterations: int) -> Solution:
+        """What :meth:`inverse` finds, whether or not it converged."""
+        return solve(self._deformed, self.jacobian, images, tolerance=tolerance, iterations=iterations)
 
     def _normals(self, mesh: PolygonMesh, points: Points) -> Points | CornerValues | None:
         stored = mesh.vertex_attributes.get("normals")

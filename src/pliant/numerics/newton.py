@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -11,9 +12,61 @@ from pliant.errors import NotConverged
 
 Floats = NDArray[np.float64]
 Map = Callable[[Floats], Floats]
+Fused = Callable[[Floats, float, int], tuple[Floats, Floats, Floats]]
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """Pre-images, as far as they were found.
+
+    Parameters
+    ----------
+    images
+        (n, 3) what was asked for.
+    points
+        (n, 3) the pre-images; where none was found, the best guess.
+    residual
+        (n,) lengths of y - f(x).
+    converged
+        (n,) where the residual is accepted.
+    folded
+        (n,) where det J <= 0 at the pre-image: it is not the only one.
+    """
+
+    images: Floats
+    points: Floats
+    residual: Floats
+    converged: NDArray[np.bool_]
+    folded: NDArray[np.bool_]
+
+    def required(self) -> Floats:
+        """(n, 3) the pre-images, if all were found and the map folds at none.
+
+        Raises
+        ------
+        NotConverged
+            Names the number of points that failed and the first one.
+        """
+        failed = np.flatnonzero(~self.converged)
+        if len(failed) or self.folded.any():
+            raise NotConverged(_explain(self.images, failed, np.flatnonzero(self.folded), self.residual))
+        return self.points
 
 
 def invert(f: Map, jacobian: Map, images: Floats, *, tolerance: float, iterations: int) -> Floats:
+    """The pre-images that :func:`solve` finds.
+
+    Raises
+    ------
+    NotConverged
+        Names the number of points that failed and the first one.
+    """
+    return solve(f, jacobian, images, tolerance=tolerance, iterations=iterations).required()
+
+
+def solve(
+    f: Map, jacobian: Map, images: Floats, *, tolerance: float, iterations: int, fused: Fused | None = None
+) -> Solution:
     """Solve f(x) = y for each row of ``images``: fixed-point iteration, Newton's method, then continuation.
 
     Fixed-point iteration, x <- x + y - f(x), contracts wherever the displacement's derivative is below one and
@@ -30,28 +83,30 @@ def invert(f: Map, jacobian: Map, images: Floats, *, tolerance: float, iteration
         Accepted residual, relative to the diagonal of the images' bounding box (or 1 if they are one point).
     iterations
         Largest number of Newton steps.
-
-    Raises
-    ------
-    NotConverged
-        Names the number of points that failed and the first one.
+    fused
+        A kernel that does the first two stages at once: from images, accepted residual and iterations to pre-images,
+        residuals' lengths and det J.
     """
-    x = images.copy()
-    if not len(x):
-        return x
+    if not len(images):
+        none = np.zeros(0, bool)
+        return Solution(images, images.copy(), np.zeros(0), none, none)
     scale = float(np.linalg.norm(images.max(axis=0) - images.min(axis=0))) or 1.0
-    _iterate_fixed_point(f, images, x)
-    failed, error = _newton(f, jacobian, images, x, tolerance * scale, iterations)
+    accepted = tolerance * scale
+    if fused is None:
+        x = images.copy()
+        _iterate_fixed_point(f, images, x)
+        _, error = _newton(f, jacobian, images, x, accepted, iterations)
+        ratio = np.linalg.det(jacobian(x))
+    else:
+        x, error, ratio = fused(images, accepted, iterations)
+    failed = np.flatnonzero(~(error <= accepted))
     if len(failed):
-        followed = _follow(f, jacobian, images[failed], tolerance * scale, iterations)
+        followed = _follow(f, jacobian, images[failed], accepted, iterations)
         left = np.linalg.norm(images[failed] - f(followed), axis=1)
         better = left < error[failed]
         x[failed[better]], error[failed[better]] = followed[better], left[better]
-        failed = failed[~(error[failed] <= tolerance * scale)]
-    folded = _folded(jacobian, x)
-    if len(failed) or len(folded):
-        raise NotConverged(_explain(images, failed, folded, error))
-    return x
+        ratio[failed] = np.linalg.det(jacobian(x[failed]))
+    return Solution(images, x, error, error <= accepted, ratio <= 0)
 
 
 def _iterate_fixed_point(f: Map, images: Floats, x: Floats) -> None:
@@ -132,10 +187,6 @@ def _solve(jacobian: Floats, residual: Floats) -> Floats:
     adjugate = np.stack([bc, np.cross(c, a), np.cross(a, b)], axis=1)
     step = np.einsum("nij,nj->ni", adjugate, residual) / safe[:, None]
     return np.where(regular[:, None], step, residual)
-
-
-def _folded(jacobian: Map, x: Floats) -> NDArray[np.int64]:
-    return np.flatnonzero(np.linalg.det(jacobian(x)) <= 0)
 
 
 def _explain(images: Floats, active: NDArray[np.int64], folded: NDArray[np.int64], error: Floats) -> str:

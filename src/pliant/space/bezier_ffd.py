@@ -17,6 +17,8 @@ from pliant.errors import InvalidDeformer, OutsideDomain
 from pliant.mesh import Points, PolygonMesh, as_points
 from pliant.numerics.bases import BernsteinPoints
 from pliant.numerics.cells import BERNSTEIN, CellGrid, CellPoints
+from pliant.numerics.lattice_inverse import LatticeNewton
+from pliant.numerics.newton import Solution, solve
 from pliant.numerics.polynomial_cells import PolynomialCells
 from pliant.numerics.ragged import frozen
 from pliant.space.box import box_around, checked_axes, thickened
@@ -207,19 +209,37 @@ class BezierFFD(SpaceDeformer):
     def _frame(self) -> Floats:
         """(3, 4) from positions to parameters, counted in patches."""
         inverse = np.linalg.inv(self.edges)
-        return np.column_stack([inverse, -inverse @ self.origin]) * np.array([self.patches or (1, 1, 1)]).T
+        frame = np.column_stack([inverse, -inverse @ self.origin])
+        return np.asarray(frame * np.array([self.patches or (1, 1, 1)]).T)
+
+    def _solved(self, images: Points, tolerance: float, iterations: int) -> Solution:
+        fused = LatticeNewton(self._grid, self.displacements, np.eye(4)) if self._is_cubic else None
+        return solve(self._deformed, self.jacobian, images, tolerance=tolerance, iterations=iterations, fused=fused)
+
+    @property
+    def _is_cubic(self) -> bool:
+        return self.patches is not None or self.shape == (4, 4, 4)
+
+    @property
+    def _grid(self) -> CellGrid:
+        """The patches as cells, where they are tricubic."""
+        counts = np.array(self.patches or (1, 1, 1))
+        everywhere = np.array([[-np.inf] * 3, [np.inf] * 3])
+        return CellGrid(self._frame, counts, 3, BERNSTEIN, everywhere, self._keep)
+
+    @property
+    def _keep(self) -> Floats:
+        """(2, 3) parameters, counted in patches, beyond which nothing moves."""
+        beyond = np.inf if self.outside == "extend" else TOLERANCE
+        return np.stack([np.full(3, -beyond), np.array(self.patches or (1, 1, 1)) + beyond])
 
     def _sampled(self, points: Points) -> CellPoints | BernsteinPoints:
         """The basis at some points: the sorted tricubic form wherever the patches are cubic."""
-        scale, frame = np.array(self.patches or (1, 1, 1), np.float64), self._frame
-        beyond = np.inf if self.outside == "extend" else TOLERANCE
-        keep = np.stack([np.full(3, -beyond), scale + beyond])
         sampled: CellPoints | BernsteinPoints
-        if self.patches is not None or self.shape == (4, 4, 4):
-            everywhere = np.array([[-np.inf] * 3, [np.inf] * 3])
-            sampled = CellPoints(CellGrid(frame, scale.astype(np.int64), 3, BERNSTEIN, everywhere, keep), points)
+        if self._is_cubic:
+            sampled = CellPoints(self._grid, points)
         else:
-            sampled = BernsteinPoints(self.shape, frame, keep, points)
+            sampled = BernsteinPoints(self.shape, self._frame, self._keep, points)
         if self.outside == "error":
             _refuse_outside(sampled, len(points))
         return sampled

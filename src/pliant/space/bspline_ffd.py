@@ -17,6 +17,8 @@ from pliant.deformer import Controls, SpaceDeformer, Target, checked_controls
 from pliant.errors import InvalidDeformer
 from pliant.mesh import Points, PolygonMesh, as_points
 from pliant.numerics.cells import BSPLINE, CellGrid, CellPoints, evaluate_once
+from pliant.numerics.lattice_inverse import LatticeNewton
+from pliant.numerics.newton import Solution, solve
 from pliant.numerics.polynomial_cells import PolynomialCells
 from pliant.numerics.ragged import frozen
 from pliant.space.box import box_around, checked_axes, thickened
@@ -167,6 +169,10 @@ class BSplineFFD(SpaceDeformer):
     def jacobian(self, points: ArrayLike) -> Floats:
         sampled = CellPoints(self._grid, as_points(points))
         return sampled.jacobian(self._padding.values(self.displacements), np.ascontiguousarray(self.affine[:3, :3]))
+
+    def _solved(self, images: Points, tolerance: float, iterations: int) -> Solution:
+        fused = LatticeNewton(self._grid, self._padding.values(self.displacements), self.affine)
+        return solve(self._deformed, self.jacobian, images, tolerance=tolerance, iterations=iterations, fused=fused)
 
     def refined(self) -> BSplineFFD:
         """The same map on half the spacing, exactly, by knot insertion (Lane & Riesenfeld 1980).
