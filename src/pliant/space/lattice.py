@@ -90,10 +90,10 @@ class LatticeBinding(LinearBinding):
         count, controls = len(self.points), int(np.prod(self._rest.shape[:3]))
 
         def forward(columns: Floats) -> Floats:
-            return _by_threes(lambda c: self.jvp(None, c.reshape(self._rest.shape)), columns, count)
+            return by_threes(lambda c: self.jvp(None, c.reshape(self._rest.shape)), columns, count)
 
         def backward(columns: Floats) -> Floats:
-            return _by_threes(lambda p: self.vjp(None, p).reshape(-1, 3), columns, controls)
+            return by_threes(lambda p: self.vjp(None, p).reshape(-1, 3), columns, controls)
 
         return LinearOperator((count, controls), forward, backward, forward, np.float64, backward)
 
@@ -173,7 +173,7 @@ def _indices(changed: Any, shape: tuple[int, ...]) -> NDArray[np.int64]:
     return index
 
 
-def _by_threes(apply: Callable[[Floats], Floats], columns: Floats, rows: int) -> Floats:
+def by_threes(apply: Callable[[Floats], Floats], columns: Floats, rows: int) -> Floats:
     """Apply a map of (k, 3) arrays to the columns of a matrix, three at a time."""
     matrix = np.asarray(columns, np.float64).reshape(len(columns), -1)
     result = np.empty((rows, matrix.shape[1]))
