@@ -1,0 +1,107 @@
+"""Natural-neighbour coordinates of many points: which sites influence a point, and how much."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pliant.numerics.chunks import for_chunks
+from pliant.numerics.voronoi import VoronoiCells
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.int64]
+Kind = Literal["sibson", "laplace"]
+
+CHUNK = 4096  # points a task
+
+
+@dataclass(frozen=True, eq=False)
+class Coordinates:
+    """A row of coordinates a point.
+
+    Parameters
+    ----------
+    starts
+        (n + 1,) where each row starts.
+    sites
+        (e,) which site.
+    values
+        (e,) its coordinate: not negative, and each row's sum is one.
+    gradients
+        (e, 3) the derivative with respect to the point, or (0, 3) where it was not asked for; zero at a site.
+    """
+
+    starts: Integers
+    sites: NDArray[np.int32]
+    values: Floats
+    gradients: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class NaturalNeighbors:
+    """Sites, ready to be asked for the coordinates of points.
+
+    Parameters
+    ----------
+    cells
+        The sites' Voronoi cells.
+    kind
+        ``"sibson"``: shares of the volume that a point would take (Sibson 1980); ``"laplace"``: areas of the facets
+        of its cell over distances.
+    on_site
+        Distance within which a point is the site.
+    """
+
+    cells: VoronoiCells
+    kind: Kind
+    on_site: float
+
+    def at(self, points: Floats, *, gradients: bool = False) -> Coordinates:
+        """The coordinates of (n, 3) points, which lie inside the cube of the cells."""
+        from pliant.numerics import sibson
+
+        cells, flat = self.cells, np.ascontiguousarray(points).reshape(-1)
+        kind = sibson.SIBSON if self.kind == "sibson" else sibson.LAPLACE
+        parts: dict[int, tuple[Integers, NDArray[np.int32], Floats, Floats]] = {}
+
+        def work(start: int, stop: int) -> None:
+            room = 24 * (stop - start) + 8 * len(cells.sites)
+            while True:
+                ends, columns, values = np.empty(stop - start, np.int64), np.empty(room, np.int32), np.empty(room)
+                slopes = np.empty(3 * room if gradients else 0)
+                done = sibson.coordinates(
+                    flat, start, stop, cells.sites.reshape(-1), cells.starts, cells.facets, cells.owners,
+                    cells.others, cells.normals.reshape(-1), cells.offsets, cells.corner_starts,
+                    cells.corners.reshape(-1),
+                    *self._seeds, kind, self.on_site, ends, columns, values, slopes,
+                )  # fmt: skip
+                if done == stop - start:
+                    break
+                room *= 2
+            used = int(ends[-1])
+            parts[start] = ends, columns[:used].copy(), values[:used].copy(), slopes[: 3 * used].copy()
+
+        for_chunks(work, len(points), CHUNK)
+        pieces = [parts[start] for start in sorted(parts)]
+        lengths = [np.diff(ends, prepend=0) for ends, _, _, _ in pieces]
+        starts = np.concatenate([np.zeros(1, np.int64), *lengths]).cumsum()
+        columns = np.concatenate([np.empty(0, np.int32), *(piece[1] for piece in pieces)])
+        values = np.concatenate([np.empty(0), *(piece[2] for piece in pieces)])
+        slopes = np.concatenate([np.empty(0), *(piece[3] for piece in pieces)])
+        return Coordinates(starts, columns, values, slopes.reshape(-1, 3))
+
+    @cached_property
+    def _seeds(self) -> tuple[Floats, Integers, NDArray[np.int32]]:
+        """A grid with a site near each cell, fine enough that searches are short."""
+        from scipy.spatial import cKDTree
+
+        sites = self.cells.sites
+        low, extent = sites.min(axis=0), np.ptp(sites, axis=0)
+        side = int(np.clip(np.ceil((16 * len(sites)) ** (1 / 3)), 4, 64))
+        middles = np.stack(np.meshgrid(*[(np.arange(side) + 0.5) / side] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
+        near = cKDTree(sites).query(low + middles * extent)[1].astype(np.int32)
+        return np.stack([low, side / extent]), np.full(3, side), near
