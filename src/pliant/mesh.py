@@ -51,6 +51,9 @@ class PolygonMesh:
         ``"colors"``.
     lines
         Polylines, as rows of vertex indices.
+    cells
+        Cells of a volume mesh by their kind, such as ``"tetra"``: (c, k) vertex indices each. They ride along; what
+        is drawn and measured is the faces.
     source
         Where the mesh was read from.
     carrier
@@ -73,6 +76,7 @@ class PolygonMesh:
     vertex_attributes: Mapping[str, NDArray[Any]] = field(default_factory=dict)
     face_attributes: Mapping[str, NDArray[Any]] = field(default_factory=dict)
     lines: Ragged | None = None
+    cells: Mapping[str, NDArray[np.int32]] = field(default_factory=dict)
     source: Path | None = None
     carrier: Any = None
 
@@ -88,6 +92,8 @@ class PolygonMesh:
             self._set(lines=Ragged.of(self.lines))
         _require_vertices(self.faces, len(points), "face")
         _require_vertices(self.lines, len(points), "line")
+        for kind, rows in self.cells.items():
+            _require_cells(np.asarray(rows), len(points), kind)
         for name, labels in (("groups", self.groups), ("objects", self.objects), ("materials", self.materials)):
             if labels is not None:
                 _require_length(name, labels.indices, len(self.faces), "faces")
@@ -101,6 +107,7 @@ class PolygonMesh:
         self._set(
             vertex_attributes=_frozen_mapping(self.vertex_attributes),
             face_attributes=_frozen_mapping(self.face_attributes),
+            cells=MappingProxyType({kind: frozen(rows, np.int32) for kind, rows in self.cells.items()}),
             material_library=MappingProxyType(dict(self.material_library)),
         )
 
@@ -110,7 +117,7 @@ class PolygonMesh:
 
     def __reduce__(self) -> tuple[Any, ...]:
         state = {name: getattr(self, name) for name in self.__dataclass_fields__}
-        for name in ("vertex_attributes", "face_attributes", "material_library"):
+        for name in ("vertex_attributes", "face_attributes", "material_library", "cells"):
             state[name] = dict(state[name])  # a mapping proxy does not pickle
         return _rebuild, (state,)
 
@@ -220,6 +227,7 @@ class PolygonMesh:
             low, high = self.bounds
             rows["size"] = " × ".join(f"{extent:.4g}" for extent in high - low)
         sides = np.unique(self.faces.lengths)
+        rows |= {kind: f"{len(each):,}" for kind, each in self.cells.items()}
         rows["corners a face"] = ", ".join(map(str, sides[:6])) + (" …" if len(sides) > 6 else "")
         carried = [
             name
@@ -284,6 +292,14 @@ def _require_vertices(rows: Ragged | None, count: int, kind: str) -> None:
         return
     at = int(np.flatnonzero((rows.flat < 0) | (rows.flat >= count))[0])
     raise InvalidMesh(f"{kind} {rows.row_of[at]} uses vertex {rows.flat[at]}; there are {count} vertices")
+
+
+def _require_cells(rows: NDArray[Any], count: int, kind: str) -> None:
+    if rows.ndim != 2:
+        raise InvalidMesh(f"cells {kind!r} have shape {rows.shape}; one row a cell is needed")
+    if rows.size and not 0 <= rows.min() <= rows.max() < count:
+        worst = rows.min() if rows.min() < 0 else rows.max()
+        raise InvalidMesh(f"a cell of the kind {kind!r} uses vertex {worst}; there are {count} vertices")
 
 
 def _require_length(name: str, values: NDArray[Any], count: int, what: str) -> None:

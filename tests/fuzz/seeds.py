@@ -144,6 +144,8 @@ SEEDS = {
     "off-binary": off_binary(),
     "stl-text": STL_TEXT,
     "stl-binary": stl_binary(),
+    "csv": b"id,x,y,z,nx,ny,nz,heat\n1,0,0,0,0,0,1,2.5\n2,1,0,0,0,0,1,3\n3,0,1,0,0,0,1,4\n",
+    "xyz": b"# a cloud\n0 0 0 255 0 0\n1 0 0 0 255 0\n0 1e-3 0 0 0 255\n",
     "ply-text": PLY_TEXT,
     "ply-little": ply_binary("<"),
     "ply-big": ply_binary(">"),

@@ -16,7 +16,7 @@ import numpy as np
 from pliant.mesh import PolygonMesh
 from pliant.numerics.ragged import Ragged
 
-_FIELDS = ("faces", "uvs", "groups", "objects", "materials", "material_library", "face_attributes", "lines")
+_FIELDS = ("faces", "uvs", "groups", "objects", "materials", "material_library", "face_attributes", "lines", "cells")
 
 
 @dataclass(frozen=True, eq=False)

@@ -43,10 +43,13 @@ class Source:
 class Keeps:
     """What a format can hold. Losses are told from this table, so it and they cannot disagree.
 
-    ``precision`` says how coordinates are stored when a mesh of another format is written.
+    ``cells`` are those of a volume mesh; ``precision`` says how coordinates are stored when a mesh of another format
+    is written.
     """
 
+    faces: bool = True
     polygons: bool = False
+    cells: bool = False
     shared_vertices: bool = True
     lines: bool = False
     corner_uvs: bool = False
@@ -79,6 +82,7 @@ class MeshFormat(ABC):
     name: ClassVar[str]
     suffixes: ClassVar[tuple[str, ...]]
     keeps: ClassVar[Keeps]
+    written: ClassVar[bool] = True
 
     @abstractmethod
     def sniff(self, data: bytes) -> bool:

@@ -41,11 +41,16 @@ def losses_of(
 
 def _shape(mesh: PolygonMesh, keeps: Keeps) -> Iterator[str]:
     sides = mesh.faces.lengths
-    if not keeps.polygons:
+    if not keeps.faces:
+        if len(sides):
+            yield f"{len(sides):,} faces: points alone are kept"
+    elif not keeps.polygons:
         if count := int((sides > 3).sum()):
             yield f"{count:,} polygons are cut into {int((sides[sides > 3] - 2).sum()):,} triangles"
         if count := int((sides < 3).sum()):
             yield f"{count:,} faces of fewer than three corners"
+    if not keeps.cells:
+        yield from (f"{len(rows):,} cells of the kind {kind!r}" for kind, rows in mesh.cells.items())
     flat = mesh.faces.flat
     if not keeps.shared_vertices and not (len(flat) == len(mesh.points) and (flat == np.arange(len(flat))).all()):
         used = np.zeros(len(mesh.points), bool)

@@ -29,6 +29,7 @@ _FORMATS = {  # module and class by ending; files are recognised in this order
     "pliant.io.off:Off": (".off", ".coff", ".noff", ".stoff", ".cnoff", ".stcnoff"),
     "pliant.io.stl:Stl": (".stl",),
     "pliant.io.obj:Obj": (".obj",),
+    "pliant.io.point_table:PointTable": (".xyz", ".csv"),
 }
 
 
@@ -141,8 +142,13 @@ def write(
 
 
 def formats() -> list[dict[str, Any]]:
-    """What each format is called, its endings, and what it keeps, by the names of :class:`~pliant.io.format.Keeps`."""
-    return [{"name": each.name, "suffixes": each.suffixes, **asdict(each.keeps)} for each in _all()]
+    """What each format is called, its endings, whether it is written, and what it keeps.
+
+    The latter by the names of :class:`~pliant.io.format.Keeps`.
+    """
+    return [
+        {"name": each.name, "suffixes": each.suffixes, "written": each.written, **asdict(each.keeps)} for each in _all()
+    ]
 
 
 @cache

@@ -222,8 +222,8 @@ def splice_tokens(data, starts, text, out):  # type: ignore[no-untyped-def]
             out[write] = data[at]
             write += 1
         read = start
-        while read < len(data) and data[read] > 32 and data[read] != 35 and data[read] != 92:
-            read += 1  # 92: a backslash continues the line
+        while read < len(data) and data[read] > 32 and data[read] not in (35, 44, 59, 92):
+            read += 1  # a backslash, 92, continues the line; 44 and 59 are the separators of tables
         while piece < len(text) and text[piece] != 44:
             out[write] = text[piece]
             write += 1
