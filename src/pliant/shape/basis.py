@@ -1,0 +1,252 @@
+"""The fields of a model at its points, u = sum_j a_j ψ_j, in the form in which they take least room.
+
+Coefficients are flat, (k,), each standard normal. A scalar basis of rank r has k = 3 r of them: number 3 j + c moves
+coordinate c along field j.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import DTypeLike, NDArray
+
+from pliant.numerics.chunks import for_chunks
+from pliant.numerics.threads import one_blas_thread
+
+Floats = NDArray[np.float64]
+Integers = NDArray[np.integer]
+
+_BLOCK = 262_144  # results of many shapes that are made at once
+_FEW = 4  # shapes that are made one by one
+
+
+class Basis(ABC):
+    """k fields at n points."""
+
+    scalar: bool
+    deviations: Floats  # (r,) or (k,) standard deviations, as the eigenvalues tell them
+
+    @property
+    @abstractmethod
+    def size(self) -> int:
+        """n, the number of points."""
+
+    @property
+    def rank(self) -> int:
+        """How many fields there are; a scalar one counts once."""
+        return len(self.deviations)
+
+    @property
+    def count(self) -> int:
+        """k, the number of coefficients."""
+        return (3 if self.scalar else 1) * self.rank
+
+    @abstractmethod
+    def apply(self, coefficients: Floats, dtype: DTypeLike = np.float64) -> NDArray[np.floating]:
+        """(..., n, 3) displacements for (..., k) coefficients."""
+
+    @abstractmethod
+    def transpose(self, values: Floats) -> Floats:
+        """(k,) the inner products of the fields with (n, 3) values."""
+
+    @abstractmethod
+    def rows(self, chosen: Integers, weights: Floats | None = None) -> Basis:
+        """The fields at some points (m,), or at combinations of points (m, c) with weights (m, c)."""
+
+    @abstractmethod
+    def gram(self, precision: Floats) -> Floats:
+        """Qᵀ P Q with a precision (n,) or (n, 3, 3) a point: (r, r) where all is scalar, else (k, k)."""
+
+    @abstractmethod
+    def combined(self, matrix: Floats, deviations: Floats) -> Basis:
+        """The fields Q M: (k, j) or, for scalar ones, (r, j) matrices."""
+
+    @abstractmethod
+    def columns(self) -> Floats:
+        """(n, 3, k) all fields."""
+
+    def covariances(self) -> Floats:
+        """(n, 3, 3) of each point."""
+        columns = self.columns()
+        return np.asarray(columns @ columns.transpose(0, 2, 1))
+
+    def turned(self, linear: Floats) -> FullBasis:
+        """The fields after a linear map of space."""
+        deviations = np.repeat(self.deviations, 3) if self.scalar else self.deviations
+        return FullBasis(linear @ self.columns(), deviations)
+
+
+@dataclass(frozen=True, eq=False)
+class ScalarBasis(Basis):
+    """Scalar fields ψ (n, r), one for all coordinates."""
+
+    factors: Floats
+    deviations: Floats
+
+    scalar = True
+
+    @property
+    def size(self) -> int:
+        """n, the number of points."""
+        return len(self.factors)
+
+    def apply(self, coefficients: Floats, dtype: DTypeLike = np.float64) -> NDArray[np.floating]:
+        shape = (*coefficients.shape[:-1], self.size, 3)
+        stacked = coefficients.reshape(-1, self.rank, 3).astype(dtype, copy=False)
+        if len(stacked) < _FEW:
+            factors = self.factors.astype(dtype, copy=False)
+            return np.asarray([factors @ each for each in stacked], dtype).reshape(shape)
+        flat = np.ascontiguousarray(stacked.transpose(1, 0, 2)).reshape(self.rank, -1)
+        return many(self.factors, flat, len(stacked), dtype).reshape(shape)
+
+    def transpose(self, values: Floats) -> Floats:
+        return np.asarray((self.factors.T @ values).reshape(-1))
+
+    def rows(self, chosen: Integers, weights: Floats | None = None) -> ScalarBasis:
+        return ScalarBasis(_rows(self.factors, chosen, weights), self.deviations)
+
+    def gram(self, precision: Floats) -> Floats:
+        """(r, r) for one precision a point, else (3 r, 3 r)."""
+        if precision.ndim == 1:
+            return np.asarray(self.factors.T @ (precision[:, None] * self.factors))
+        weighted = (precision[:, None] * self.factors[:, :, None, None]).reshape(self.size, -1)
+        gram = (self.factors.T @ weighted).reshape(self.rank, self.rank, 3, 3)
+        return np.asarray(gram.transpose(0, 2, 1, 3).reshape(self.count, self.count))
+
+    def combined(self, matrix: Floats, deviations: Floats) -> Basis:
+        return MixedBasis(self, matrix, deviations)
+
+    def columns(self) -> Floats:
+        result = np.zeros((self.size, 3, self.rank, 3))
+        for axis in range(3):
+            result[:, axis, :, axis] = self.factors
+        return result.reshape(self.size, 3, -1)
+
+    def covariances(self) -> Floats:
+        return np.asarray(np.einsum("nj,nj->n", self.factors, self.factors)[:, None, None] * np.eye(3))
+
+
+@dataclass(frozen=True, eq=False)
+class FullBasis(Basis):
+    """Fields ψ as vectors, (n, 3, k)."""
+
+    fields: Floats
+    deviations: Floats
+
+    scalar = False
+
+    @property
+    def size(self) -> int:
+        """n, the number of points."""
+        return len(self.fields)
+
+    @property
+    def _flat(self) -> Floats:
+        return self.fields.reshape(3 * self.size, -1)
+
+    def apply(self, coefficients: Floats, dtype: DTypeLike = np.float64) -> NDArray[np.floating]:
+        shape = (*coefficients.shape[:-1], self.size, 3)
+        stacked = coefficients.reshape(-1, self.count).astype(dtype, copy=False)
+        return np.asarray(stacked @ self._flat.T.astype(dtype, copy=False)).reshape(shape)
+
+    def transpose(self, values: Floats) -> Floats:
+        return np.asarray(self._flat.T @ values.reshape(-1))
+
+    def rows(self, chosen: Integers, weights: Floats | None = None) -> FullBasis:
+        return FullBasis(_rows(self.fields, chosen, weights), self.deviations)
+
+    def gram(self, precision: Floats) -> Floats:
+        """(k, k)."""
+        weighted = precision[:, None, None] * self.fields if precision.ndim == 1 else precision @ self.fields
+        return np.asarray(self._flat.T @ weighted.reshape(3 * self.size, -1))
+
+    def combined(self, matrix: Floats, deviations: Floats) -> Basis:
+        return MixedBasis(self, matrix, deviations)
+
+    def columns(self) -> Floats:
+        return self.fields
+
+
+@dataclass(frozen=True, eq=False)
+class MixedBasis(Basis):
+    """Fields Q M of another basis: what conditioning makes, without touching the points."""
+
+    base: Basis
+    matrix: Floats
+    deviations: Floats
+
+    @property
+    def scalar(self) -> bool:  # type: ignore[override]
+        return self.base.scalar and len(self.matrix) == self.base.rank
+
+    @property
+    def size(self) -> int:
+        """n, the number of points."""
+        return self.base.size
+
+    def apply(self, coefficients: Floats, dtype: DTypeLike = np.float64) -> NDArray[np.floating]:
+        return self.base.apply(self.mixed(coefficients), dtype)
+
+    def mixed(self, coefficients: Floats) -> Floats:
+        """(..., k) coefficients of the other basis."""
+        if not self.scalar:
+            return np.asarray(coefficients @ self.matrix.T)
+        shape = coefficients.shape[:-1]
+        return np.asarray((self.matrix @ coefficients.reshape(*shape, self.rank, 3)).reshape(*shape, -1))
+
+    def transpose(self, values: Floats) -> Floats:
+        inner = self.base.transpose(values)
+        return np.asarray((self.matrix.T @ (inner.reshape(-1, 3) if self.scalar else inner)).reshape(-1))
+
+    def rows(self, chosen: Integers, weights: Floats | None = None) -> Basis:
+        return MixedBasis(self.base.rows(chosen, weights), self.matrix, self.deviations)
+
+    def gram(self, precision: Floats) -> Floats:
+        inner = self.base.gram(precision)
+        matrix = self.matrix
+        if len(inner) != len(matrix):
+            matrix, inner = _alike(matrix, inner)
+        return np.asarray(matrix.T @ inner @ matrix)
+
+    def combined(self, matrix: Floats, deviations: Floats) -> Basis:
+        own = self.matrix
+        if self.scalar and len(matrix) != self.rank:
+            own = everywhere(own)
+        return MixedBasis(self.base, own @ matrix, deviations)
+
+    def columns(self) -> Floats:
+        matrix = everywhere(self.matrix) if self.scalar else self.matrix
+        return np.asarray(self.base.columns() @ matrix)
+
+
+def many(factors: Floats, flat: NDArray[np.floating], count: int, dtype: DTypeLike) -> NDArray[np.floating]:
+    """(count, n, 3) = factors (n, r) times flat (r, count 3), in the order of shapes, not of points."""
+    out = np.empty((count, len(factors), 3), dtype)
+
+    def work(first: int, stop: int) -> None:
+        part = factors[first:stop].astype(dtype, copy=False) @ flat
+        out[:, first:stop] = part.reshape(stop - first, count, 3).transpose(1, 0, 2)
+
+    with one_blas_thread():
+        for_chunks(work, len(factors), max(16, _BLOCK // (3 * count)))
+    return out
+
+
+def everywhere(matrix: Floats) -> Floats:
+    """A matrix of scalar coefficients as one of the coefficients of all three coordinates."""
+    return np.asarray(np.kron(matrix, np.eye(3)), np.float64)
+
+
+def _rows(values: Floats, chosen: Integers, weights: Floats | None) -> Floats:
+    if weights is None:
+        return values[chosen]
+    return np.asarray(np.einsum("mc,mc...->m...", weights, values[chosen]))
+
+
+def _alike(matrix: Floats, inner: Floats) -> tuple[Floats, Floats]:
+    """A scalar matrix beside one of all coordinates: what is scalar is written out."""
+    if len(inner) < len(matrix):
+        return matrix, everywhere(inner)
+    return everywhere(matrix), inner
