@@ -41,4 +41,7 @@ from .space.thin_plate_spline import ThinPlateSpline as ThinPlateSpline
 from .space.twist import Twist as Twist
 from .space.wave import Wave as Wave
 from .surface.arap import ARAP as ARAP
+from .surface.contour_skeletons import ContourSkeleton as ContourSkeleton
+from .surface.contour_skeletons import contour_skeleton as contour_skeleton
 from .surface.laplacian_edit import LaplacianEdit as LaplacianEdit
+from .surface.skeleton_edit import SkeletonEdit as SkeletonEdit

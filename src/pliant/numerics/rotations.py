@@ -38,3 +38,19 @@ def rotations_of(vectors: Floats) -> Floats:
     zero = np.zeros_like(x)
     cross = np.stack([zero, -z, y, z, zero, -x, -y, x, zero], axis=1).reshape(-1, 3, 3)
     return np.asarray(np.eye(3) + one[:, None, None] * cross + two[:, None, None] * (cross @ cross))
+
+
+def turning_vectors(before: Floats, after: Floats) -> Floats:
+    """(n, 3) the shortest rotation vectors that turn the directions of (n, 3) into those of (n, 3) others.
+
+    Zero where a direction is none; smooth but at half turns; complex directions as in :func:`rotations_of`.
+    """
+    cross = np.cross(before, after)
+    size = np.sqrt((before**2).sum(axis=1)) * np.sqrt((after**2).sum(axis=1))
+    cosine = (before * after).sum(axis=1)
+    sine = np.sqrt((cross**2).sum(axis=1))
+    flat = np.abs(sine) < 1e-7 * np.abs(size)  # half the angle has the tangent sine / (size + cosine)
+    nothing = np.abs(size + cosine) <= 1e-14 * np.abs(size)
+    safe = np.where(nothing, 1.0, size + cosine)
+    angle_by_sine = 2 * np.arctan(np.where(flat, 0.0, sine) / safe) / np.where(flat, 1.0, sine)
+    return np.asarray(cross * np.where(flat, 2 / safe, angle_by_sine)[:, None])

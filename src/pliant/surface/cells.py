@@ -1,4 +1,4 @@
-"""A region cut into overlapping cells, a vertex and its edges each: as-rigid-as-possible energies are sums over them."""
+"""A region cut into overlapping cells, a vertex and its edges each: what as-rigid-as-possible energies sum over."""
 
 from __future__ import annotations
 
