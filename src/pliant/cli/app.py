@@ -8,6 +8,7 @@ import typer
 
 from pliant.cli.convert import convert
 from pliant.cli.deform import deform
+from pliant.cli.deformer_options import DeformingCommand
 from pliant.cli.demo import demo
 from pliant.cli.exits import EXPLAINED
 from pliant.cli.info import info
@@ -21,7 +22,7 @@ app = typer.Typer(
     epilog=EXPLAINED,
 )
 for command in (deform, info, convert, render, demo):
-    app.command()(command)
+    app.command(cls=DeformingCommand if command in (deform, render) else None)(command)
 
 
 def _version(wanted: bool) -> None:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
+from pliant.cli.deformer_options import BASES, Step, made
 from pliant.cli.options import Edge, MeshSpace, Placement, Variant, lattice_move, lattice_shape, three_numbers
 
 if TYPE_CHECKING:
@@ -30,6 +31,7 @@ class Choice:
     moves: tuple[str, ...] = ()
     inverse: bool = False
     mesh_space: MeshSpace = MeshSpace.as_is
+    steps: tuple[Step, ...] = ()
 
     def deformer(self, mesh: PolygonMesh) -> SpaceDeformer | None:
         """The deformer, in the space of the mesh; None where no option asks for one.
@@ -41,18 +43,11 @@ class Choice:
         """
         if self.ffd is not None and self.lattice is not None:
             raise typer.BadParameter("give one of --ffd and --lattice, not both", param_hint="--lattice")
-        if self.ffd is None and self.lattice is None:
-            if self.moves or self.inverse:
-                raise typer.BadParameter("there is nothing to move or invert: add --ffd or --lattice")
-            return None
-        found = self._read(mesh) if self.ffd is not None else self._new(mesh)
-        if self.moves:
-            found = _moved(found, self.moves)
-        if self.mesh_space is MeshSpace.lps:
-            from pliant.space.placed import place
-
-            found = place(found, half_turn())
-        if self.inverse:
+        base = self._base(mesh)
+        if base is None and (self.moves or (self.inverse and not self.steps)):
+            raise typer.BadParameter("there is nothing to move or invert: add --ffd or --lattice")
+        found = self._composed(base, mesh)
+        if found is not None and self.inverse:
             from pliant.space.inverse import Inverse
 
             return Inverse(found)
@@ -62,8 +57,33 @@ class Choice:
         """As :meth:`deformer`, where there must be one."""
         found = self.deformer(mesh)
         if found is None:
-            raise typer.BadParameter("say how to deform: --ffd FILE, or --lattice NxNxN with --move")
+            raise typer.BadParameter(
+                "say how to deform: --ffd FILE, --lattice NxNxN with --move, or --twist angle=90 ..."
+            )
         return found
+
+    def _base(self, mesh: PolygonMesh) -> SpaceDeformer | None:
+        """The lattice or the file's transform, moved and turned as asked for."""
+        if self.ffd is None and self.lattice is None:
+            return None
+        found = self._read(mesh) if self.ffd is not None else self._new(mesh)
+        if self.moves:
+            found = _moved(found, self.moves)
+        if self.mesh_space is MeshSpace.lps:
+            from pliant.space.placed import place
+
+            return place(found, half_turn())
+        return found
+
+    def _composed(self, base: SpaceDeformer | None, mesh: PolygonMesh) -> SpaceDeformer | None:
+        """All deformations in the order of their options."""
+        parts = [base if name in BASES else made((name, text), mesh) for name, text in self.steps] or [base]
+        chain = [part for part in parts if part is not None]
+        if len(chain) < 2:
+            return chain[0] if chain else None
+        from pliant.space.compose import compose
+
+        return compose(*chain)
 
     def _read(self, mesh: PolygonMesh) -> SpaceDeformer:
         from pliant.io.transforms import read_transform

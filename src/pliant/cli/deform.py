@@ -9,6 +9,7 @@ import typer
 
 from pliant.cli import options as opt
 from pliant.cli.choice import Choice
+from pliant.cli.deformer_options import STEPS
 from pliant.cli.session import Session
 
 if TYPE_CHECKING:
@@ -16,6 +17,7 @@ if TYPE_CHECKING:
 
 
 def deform(
+    context: typer.Context,
     mesh: opt.MeshArgument,
     output: Annotated[Path, typer.Option("--output", "-o", metavar="OUT", help="Where to write the deformed mesh.")],
     ffd: opt.FFDOption = None,
@@ -34,10 +36,13 @@ def deform(
 ) -> None:
     """Deform a mesh.
 
-    Give a transform file, or a new lattice whose control points you move. Polygons, texture coordinates, groups and
-    materials stay as they are; stored normals follow.
+    Give a transform file, a new lattice whose control points you move, or deformations such as --twist, several in
+    turn. Polygons, texture coordinates, groups and materials stay as they are; stored normals follow.
     """
-    choice = Choice(ffd, placement, variant, edge, origin, lattice, margin, tuple(move or ()), inverse, mesh_space)
+    steps = context.meta[STEPS]
+    choice = Choice(
+        ffd, placement, variant, edge, origin, lattice, margin, tuple(move or ()), inverse, mesh_space, steps
+    )
     with Session(json=json, quiet=quiet) as session:
         deform_file(session, mesh, output, choice, strict=strict)
 

@@ -9,10 +9,12 @@ import typer
 
 from pliant.cli import options as opt
 from pliant.cli.choice import Choice, half_turn
+from pliant.cli.deformer_options import STEPS
 from pliant.cli.session import Session
 
 
 def render(
+    context: typer.Context,
     mesh: opt.MeshArgument,
     output: Annotated[Path, typer.Option("--output", "-o", metavar="PNG", help="Where to write the picture.")],
     ffd: opt.FFDOption = None,
@@ -41,7 +43,8 @@ def render(
 
     Needs the extra 'render'. A mesh in LPS is drawn in RAS, the space of the transform.
     """
-    choice = Choice(ffd, placement, variant, edge, origin, lattice, margin, tuple(move or ()), inverse)
+    steps = context.meta[STEPS]
+    choice = Choice(ffd, placement, variant, edge, origin, lattice, margin, tuple(move or ()), inverse, steps=steps)
     with Session(json=json, quiet=quiet) as session:
         from pliant.io.meshes import read
         from pliant.rendering.pictures import render as draw

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from types import MappingProxyType
 from typing import Any, ClassVar
@@ -52,7 +52,7 @@ class Bend(AxialDeformer):
 
     axis: Axis = "x"
     normal: Axis = "z"
-    angle: float = 0.0
+    angle: float = field(default=0.0, metadata={"unit": "radians"})
     center: float | None = None
 
     parameters: ClassVar[tuple[str, ...]] = ("angle",)

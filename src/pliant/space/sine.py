@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from types import MappingProxyType
 from typing import ClassVar
@@ -43,9 +43,9 @@ class Sine(ProfiledDeformer):
     """
 
     normal: Axis | None = None
-    amplitude: float = 0.0
+    amplitude: float = field(default=0.0, metadata={"unit": "length"})
     waves: float = 1.0
-    phase: float = 0.0
+    phase: float = field(default=0.0, metadata={"unit": "radians"})
     profile: ProfileLike = "constant"
 
     parameters: ClassVar[tuple[str, ...]] = ("amplitude", "waves", "phase")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from types import MappingProxyType
 from typing import Any, ClassVar
 
@@ -34,7 +34,7 @@ class Twist(ProfiledDeformer, SimilarDeformer):
         Where the turning happens, see :class:`~pliant.space.profiled.ProfiledDeformer`.
     """
 
-    angle: float = 0.0
+    angle: float = field(default=0.0, metadata={"unit": "radians"})
 
     parameters: ClassVar[tuple[str, ...]] = ("angle",)
     neutral: ClassVar[Mapping[str, float]] = MappingProxyType({"angle": 0.0})
