@@ -84,7 +84,8 @@ class DisplacementGrid(SpaceDeformer):
         if values["origin"].shape != (3,) or values["spacing"].shape != (3,):
             raise InvalidDeformer("the grid's origin and spacing must be three numbers each")
         for name, value in values.items():
-            if not np.isfinite(value).all():
+            flat = value.reshape(-1)
+            if not np.isfinite(flat @ flat) and not np.isfinite(value).all():  # the product overflows, but is quick
                 raise InvalidDeformer(
                     f"the grid's {name} hold {(~np.isfinite(value)).sum()} numbers that are not finite"
                 )
