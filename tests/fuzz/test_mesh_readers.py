@@ -66,7 +66,7 @@ def test_a_damaged_file_is_a_valid_mesh_or_a_clear_error(name: str) -> None:
     assert time.process_time() - begin < 60 + COUNT  # a reader that does not end would hang the run
 
 
-@pytest.mark.parametrize("ending", ["vtp", "vtk"])
+@pytest.mark.parametrize("ending", ["vtp", "vtk", "vtu"])
 def test_a_damaged_vtk_file_is_a_valid_mesh_or_a_clear_error(ending: str, tmp_path: Path) -> None:
     pytest.importorskip("vtkmodules")
     path = tmp_path / f"seed.{ending}"

@@ -93,6 +93,6 @@ def test_damage_is_an_error_and_harms_nobody(sphere, tmp_path):
             read_mesh_bytes(data, "bad.vtp")
 
 
-def test_grids_are_named_as_what_they_are():
-    with pytest.raises(UnsupportedFormat, match="ImageData"):
-        read_mesh_bytes(b'<?xml version="1.0"?>\n<VTKFile type="ImageData" version="0.1">', "image.vtp")
+def test_other_data_is_named_as_what_it_is():
+    with pytest.raises(UnsupportedFormat, match="table"):
+        read_mesh_bytes(b'<?xml version="1.0"?>\n<VTKFile type="Table" version="0.1">', "image.vtp")

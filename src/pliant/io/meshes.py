@@ -26,6 +26,8 @@ from pliant.mesh import PolygonMesh
 _FORMATS = {  # module and class by ending; files are recognised in this order
     "pliant.io.ply:Ply": (".ply",),
     "pliant.io.polydata:PolyData": (".vtp", ".vtk"),
+    "pliant.io.unstructured:Unstructured": (".vtu", ".vtk"),
+    "pliant.io.vtk_grid:VtkGrid": (".vti", ".vtr", ".vts"),
     "pliant.io.off:Off": (".off", ".coff", ".noff", ".stoff", ".cnoff", ".stcnoff"),
     "pliant.io.stl:Stl": (".stl",),
     "pliant.io.obj:Obj": (".obj",),
@@ -200,7 +202,7 @@ def _writer(path: Path, mesh: PolygonMesh) -> MeshFormat:
     """The format of an ending: the mesh's own if that is among those that have it."""
     found = _by_suffix(path)
     if not found:
-        endings = ", ".join(dict.fromkeys(ending for endings in _FORMATS.values() for ending in endings))
+        endings = ", ".join(dict.fromkeys(ending for each in _all() if each.written for ending in each.suffixes))
         raise UnsupportedFormat(f"{path}: no mesh format has the ending {path.suffix!r}; there are {endings}")
     own = mesh.carrier.format if isinstance(mesh.carrier, Carrier) else None
     return next((each for each in found if each.name == own), found[0])

@@ -1,8 +1,9 @@
 """A process of its own that reads one VTK file, so that a damaged one harms nobody.
 
 VTK's readers may crash, or ask for memory without end, on a file that lies about its sizes. Called as
-``python -m pliant.io.polydata_child FILE OUT BYTES SECONDS``: OUT receives a line of JSON with the arrays' names, and
-the arrays one after another as .npy; what VTK complains of goes to the standard error.
+``python -m pliant.io.polydata_child FILE OUT KIND BYTES SECONDS``: KIND is what VTK's classes call it, OUT receives a
+line of JSON with the arrays' names, and the arrays one after another as .npy; what VTK complains of goes to the
+standard error.
 """
 
 from __future__ import annotations
@@ -20,22 +21,18 @@ CELLS = ("verts", "lines", "polys", "strips")
 REFUSED = 3
 
 
-def main(path: str, out: str, memory: int, seconds: int) -> int:
+def main(path: str, out: str, kind: str, memory: int, seconds: int) -> int:
     """Read a file within limits; returns the exit code."""
     _limit(memory, seconds)
     from vtkmodules.util import numpy_support
     from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
-    from vtkmodules.vtkIOLegacy import vtkPolyDataReader
-    from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
     vtk_to_numpy: Callable[[Any], NDArray[Any]] = numpy_support.vtk_to_numpy
     window = vtkStringOutputWindow()
     vtkOutputWindow.SetInstance(window)
-    with Path(path).open("rb") as stream:
-        legacy = stream.read(5).startswith(b"# vtk")
-    reader = vtkPolyDataReader() if legacy else vtkXMLPolyDataReader()
+    reader: Any = _reader(path, kind)
     reader.SetFileName(path)
-    if legacy:
+    if hasattr(reader, "ReadAllScalarsOn"):
         for every in ("Scalars", "Vectors", "Normals", "TCoords", "Tensors", "ColorScalars", "Fields"):
             getattr(reader, f"ReadAll{every}On")()
     reader.Update()
@@ -44,13 +41,7 @@ def main(path: str, out: str, memory: int, seconds: int) -> int:
         sys.stderr.write(complaint)
         return REFUSED
     data = reader.GetOutput()
-    arrays: dict[str, NDArray[Any]] = {}
-    points = data.GetPoints()
-    arrays["points"] = vtk_to_numpy(points.GetData()) if points else np.empty((0, 3))
-    for name in CELLS:
-        cells = getattr(data, f"Get{name.capitalize()}")()
-        arrays[f"{name}.offsets"] = vtk_to_numpy(cells.GetOffsetsArray())
-        arrays[f"{name}.flat"] = vtk_to_numpy(cells.GetConnectivityArray())
+    arrays = _shape(data, kind, vtk_to_numpy)
     meta: dict[str, Any] = {"skipped": [], "names": {}, "active": {}}
     for kind, fields in (("point", data.GetPointData()), ("cell", data.GetCellData()), ("field", data.GetFieldData())):
         names: list[str] = []
@@ -72,6 +63,46 @@ def main(path: str, out: str, memory: int, seconds: int) -> int:
     return 0
 
 
+def _reader(path: str, kind: str) -> Any:
+    from vtkmodules import vtkIOLegacy, vtkIOXML
+
+    with Path(path).open("rb") as stream:
+        legacy = stream.read(5).startswith(b"# vtk")
+    if legacy and kind == "ImageData":
+        return vtkIOLegacy.vtkStructuredPointsReader()
+    return getattr(vtkIOLegacy, f"vtk{kind}Reader")() if legacy else getattr(vtkIOXML, f"vtkXML{kind}Reader")()
+
+
+def _shape(data: Any, kind: str, to_numpy: Callable[[Any], NDArray[Any]]) -> dict[str, NDArray[Any]]:
+    """Points and cells; grids have points alone."""
+    if kind in ("ImageData", "RectilinearGrid"):
+        return {"points": _grid(data, kind, to_numpy)}
+    points = data.GetPoints()
+    arrays = {"points": to_numpy(points.GetData()) if points else np.empty((0, 3))}
+    owners = {name: getattr(data, f"Get{name.capitalize()}") for name in CELLS} if kind == "PolyData" else {}
+    if kind == "UnstructuredGrid":
+        owners = {"cells": data.GetCells}
+        arrays["cells.types"] = to_numpy(data.GetCellTypesArray())
+    for name, cells in owners.items():
+        arrays[f"{name}.offsets"] = to_numpy(cells().GetOffsetsArray())
+        arrays[f"{name}.flat"] = to_numpy(cells().GetConnectivityArray())
+    return arrays
+
+
+def _grid(data: Any, kind: str, to_numpy: Callable[[Any], NDArray[Any]]) -> NDArray[Any]:
+    """(n, 3) the points that a grid implies, x fastest."""
+    if kind == "RectilinearGrid":
+        axes = [to_numpy(getattr(data, f"Get{axis}Coordinates")()) for axis in "XYZ"]
+        return np.stack(np.meshgrid(*axes[::-1], indexing="ij")[::-1], axis=-1).reshape(-1, 3)
+    extent = data.GetExtent()
+    spans = [np.arange(low, high + 1.0) for low, high in zip(extent[::2], extent[1::2], strict=True)]
+    index = np.stack(np.meshgrid(*spans[::-1], indexing="ij")[::-1], axis=-1).reshape(-1, 3)
+    matrix = data.GetIndexToPhysicalMatrix()
+    table = np.array([[matrix.GetElement(i, j) for j in range(4)] for i in range(3)])
+    points: NDArray[Any] = index @ table[:, :3].T + table[:, 3]
+    return points
+
+
 def _limit(memory: int, seconds: int) -> None:
     try:
         import resource
@@ -83,4 +114,4 @@ def _limit(memory: int, seconds: int) -> None:
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1], sys.argv[2], int(sys.argv[3]), int(sys.argv[4])))
+    sys.exit(main(sys.argv[1], sys.argv[2], sys.argv[3], int(sys.argv[4]), int(sys.argv[5])))

@@ -23,8 +23,15 @@ _SECONDS = 60
 _RATE = 1 << 20  # bytes a second that even a slow machine reads
 
 
-def read(source: Source) -> tuple[dict[str, NDArray[Any]], dict[str, Any]]:
+def read(source: Source, kind: str = "PolyData") -> tuple[dict[str, NDArray[Any]], dict[str, Any]]:
     """The arrays of a VTK file, and the names that they have.
+
+    Parameters
+    ----------
+    source
+        The file.
+    kind
+        What it holds, by the name that VTK's classes have.
 
     Raises
     ------
@@ -36,7 +43,8 @@ def read(source: Source) -> tuple[dict[str, NDArray[Any]], dict[str, Any]]:
     with tempfile.TemporaryDirectory(prefix="pliant-") as folder:
         path, out = Path(folder, "mesh"), Path(folder, "arrays")
         path.write_bytes(source.data)
-        command = [sys.executable, "-m", "pliant.io.polydata_child", str(path), str(out), str(memory), str(seconds)]
+        limits = [str(memory), str(seconds)]
+        command = [sys.executable, "-m", "pliant.io.polydata_child", str(path), str(out), kind, *limits]
         try:
             done = subprocess.run(command, capture_output=True, timeout=2 * seconds, check=False)  # noqa: S603
         except subprocess.TimeoutExpired as error:

@@ -1,4 +1,4 @@
-"""Writing VTK polydata from arrays, by VTK."""
+"""Writing VTK polydata and unstructured grids from arrays, by VTK."""
 
 from __future__ import annotations
 
@@ -15,6 +15,7 @@ from pliant.io.carrier import Carrier
 from pliant.io.format import Encoded, Keeps
 from pliant.io.losses import as_float32, losses_of, per_vertex
 from pliant.io.polydata_child import CELLS
+from pliant.io.vtk_cells import cells_of
 from pliant.mesh import PolygonMesh
 
 Arrays = dict[str, NDArray[Any]]
@@ -54,14 +55,19 @@ def same_file(mesh: PolygonMesh, carrier: Carrier, path: Path) -> Encoded:
     return Encoded([_bytes(arrays, layout.meta, style, legacy=legacy)], skipped, notes)
 
 
-def new_file(mesh: PolygonMesh, keeps: Keeps, path: Path) -> Encoded:
-    """A file written from the mesh alone."""
+def new_file(mesh: PolygonMesh, keeps: Keeps, path: Path, *, volumes: bool = False) -> Encoded:
+    """A file written from the mesh alone; with ``volumes`` an unstructured grid."""
     losses = losses_of(mesh, keeps)
-    none = np.zeros(1, np.int64)
     arrays: Arrays = {"points": mesh.points}
-    for name, rows in zip(CELLS, (None, mesh.lines, mesh.faces, None), strict=True):
-        arrays[f"{name}.offsets"] = none if rows is None else rows.offsets
-        arrays[f"{name}.flat"] = none[:0] if rows is None else rows.flat.astype(np.int64)
+    if volumes:
+        cells, unknown = cells_of(mesh)
+        arrays |= cells
+        losses += unknown
+    else:
+        none = np.zeros(1, np.int64)
+        for name, rows in zip(CELLS, (None, mesh.lines, mesh.faces, None), strict=True):
+            arrays[f"{name}.offsets"] = none if rows is None else rows.offsets
+            arrays[f"{name}.flat"] = none[:0] if rows is None else rows.flat.astype(np.int64)
     point = dict(mesh.vertex_attributes)
     if mesh.normals is not None and "normals" not in point and per_vertex(mesh, mesh.normals):
         point["normals"] = mesh.normals.values
@@ -73,9 +79,9 @@ def new_file(mesh: PolygonMesh, keeps: Keeps, path: Path) -> Encoded:
     if "normals" in point:
         active["point"]["Normals"] = "normals"
     cell = dict(mesh.face_attributes)
-    if mesh.lines is not None and cell:
-        before = len(mesh.lines)
-        cell = {name: _padded(values, before) for name, values in cell.items()}
+    before = 0 if mesh.lines is None else len(mesh.lines)
+    after = len(arrays["cells.types"]) - before - len(mesh.faces) if volumes else 0
+    cell = {name: _padded(values, before, after) for name, values in cell.items()}
     for kind, fields in (("point", point), ("cell", cell)):
         if "colors" in fields:
             active[kind]["Scalars"] = "colors"
@@ -85,9 +91,9 @@ def new_file(mesh: PolygonMesh, keeps: Keeps, path: Path) -> Encoded:
     return Encoded([_bytes(arrays, meta, _NEW, legacy=legacy)], losses)
 
 
-def _padded(values: NDArray[Any], before: int) -> NDArray[Any]:
-    """Cell data covers lines too, which come first: zeros stand there."""
-    return np.concatenate([np.zeros((before, *values.shape[1:]), values.dtype), values])
+def _padded(values: NDArray[Any], before: int, after: int) -> NDArray[Any]:
+    """Cell data covers lines too, which come first, and volumes, which come last: zeros stand there."""
+    return np.pad(values, [(before, after), *[(0, 0)] * (values.ndim - 1)]) if before or after else values
 
 
 def _storable(values: NDArray[Any]) -> NDArray[Any]:
@@ -97,13 +103,14 @@ def _storable(values: NDArray[Any]) -> NDArray[Any]:
 
 
 def _bytes(arrays: Arrays, meta: Mapping[str, Any], style: Mapping[str, bool], *, legacy: bool) -> bytes:
-    from vtkmodules.vtkIOLegacy import vtkPolyDataWriter
-    from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
+    from vtkmodules import vtkIOLegacy, vtkIOXML
 
-    data = _polydata(arrays, meta)
+    kind = "UnstructuredGrid" if "cells.types" in arrays else "PolyData"
+    data = _dataset(arrays, meta)
     with tempfile.TemporaryDirectory(prefix="pliant-") as folder:
         path = Path(folder, "mesh")
-        writer: Any = vtkPolyDataWriter() if legacy else vtkXMLPolyDataWriter()
+        room, name = (vtkIOLegacy, f"vtk{kind}Writer") if legacy else (vtkIOXML, f"vtkXML{kind}Writer")
+        writer: Any = getattr(room, name)()
         writer.SetFileName(str(path))
         writer.SetInputData(data)
         if legacy:
@@ -117,21 +124,25 @@ def _bytes(arrays: Arrays, meta: Mapping[str, Any], style: Mapping[str, bool], *
         return path.read_bytes()
 
 
-def _polydata(arrays: Arrays, meta: Mapping[str, Any]) -> Any:
-    """A vtkPolyData that borrows the arrays."""
+def _dataset(arrays: Arrays, meta: Mapping[str, Any]) -> Any:
+    """A vtkPolyData or vtkUnstructuredGrid that borrows the arrays."""
     from vtkmodules.util import numpy_support
     from vtkmodules.vtkCommonCore import vtkPoints
-    from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+    from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData, vtkUnstructuredGrid
 
     numpy_to_vtk: Callable[..., Any] = numpy_support.numpy_to_vtk
-    data, points = vtkPolyData(), vtkPoints()
+    data: Any = vtkUnstructuredGrid() if "cells.types" in arrays else vtkPolyData()
+    points = vtkPoints()
     points.SetData(numpy_to_vtk(np.ascontiguousarray(arrays["points"])))
     data.SetPoints(points)
-    for name in CELLS:
+    for name in ("cells",) if "cells.types" in arrays else CELLS:
         cells = vtkCellArray()
         pair = (arrays[f"{name}.{part}"].astype(np.int64, copy=False) for part in ("offsets", "flat"))
         cells.SetData(*(numpy_to_vtk(np.ascontiguousarray(each), deep=True) for each in pair))
-        getattr(data, f"Set{name.capitalize()}")(cells)
+        if name == "cells":
+            data.SetCells(numpy_to_vtk(arrays["cells.types"], deep=True), cells)
+        else:
+            getattr(data, f"Set{name.capitalize()}")(cells)
     owners = {"point": data.GetPointData(), "cell": data.GetCellData(), "field": data.GetFieldData()}
     for kind, owner in owners.items():
         for i, name in enumerate(meta["names"][kind]):
