@@ -50,7 +50,7 @@ def deformed_volume(deformer: SpaceDeformer) -> float:
     beyond = int(np.prod(last - first) - np.prod(np.minimum(last, counts) - np.maximum(first, 0)))
     first, last = np.maximum(first, 0), np.minimum(last, counts)
     index = np.stack(np.meshgrid(*map(np.arange, first, last), indexing="ij"), axis=-1).reshape(-1, 3)
-    inside = np.ravel_multi_index(tuple(index.T), tuple(counts))
+    inside = np.asarray(np.ravel_multi_index(tuple(index.T), tuple(counts)), np.int64).reshape(-1)
     polynomials = determinants_of(cells)
     total = beyond * float(polynomials.at_rest)  # an edge "identity" ends the support inside the block
     for start in range(0, len(inside), _AT_ONCE):

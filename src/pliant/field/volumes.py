@@ -57,7 +57,9 @@ def volume_gradient(mesh: PolygonMesh) -> Points:
     edges = _directed_edges(mesh)
     here, following = edges[:, 0], edges[:, 1]
     gradient = np.zeros_like(points)
-    np.add.at(gradient, here, area_vectors[polygon] / sides[polygon, None] + np.cross(points[following], centroids[polygon]))
+    np.add.at(
+        gradient, here, area_vectors[polygon] / sides[polygon, None] + np.cross(points[following], centroids[polygon])
+    )
     np.add.at(gradient, following, np.cross(centroids[polygon], points[here]))
     return gradient / 6
 

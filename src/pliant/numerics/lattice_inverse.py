@@ -10,6 +10,8 @@ from pliant.numerics.chunks import for_chunks
 
 Floats = NDArray[np.float64]
 
+_CHUNK = 16_384  # points solved together: what a chunk needs stays in the second-level cache
+
 
 class LatticeNewton:
     """Newton's method for x' = A x + t + a tricubic sum; see :func:`pliant.numerics.newton.solve`.
@@ -25,23 +27,37 @@ class LatticeNewton:
     """
 
     def __init__(self, grid: CellGrid, lattice: Floats, affine: Floats) -> None:
-        places = np.zeros((lattice.size // 3 + 2, 4))
-        places[:-2, :3] = lattice.reshape(-1, 3)
-        self._grid, self._lattice, self._affine = grid, places.reshape(-1), affine
+        self._grid, self._lattice, self._affine = grid, np.ascontiguousarray(lattice).reshape(-1), affine
 
     def __call__(self, images: Floats, accepted: float, iterations: int) -> tuple[Floats, Floats, Floats]:
         """(n, 3) pre-images, (n,) lengths of what is left of the residuals, (n,) det J at the pre-images."""
-        from pliant.numerics import lattice_newton
-
-        grid, count = self._grid, len(images)
-        out, error, ratio = np.empty((count, 3)), np.empty(count), np.empty(count)
-        flat, target, back = np.ascontiguousarray(images).reshape(-1), out.reshape(-1), np.linalg.inv(self._affine)
+        count = len(images)
+        out, error, ratio = np.empty((count, 3)), np.full(count, np.inf), np.ones(count)
 
         def work(start: int, stop: int) -> None:
-            lattice_newton.solve(
-                start, stop, flat, grid.frame, grid.limits, grid.keep, grid.counts, grid.stride, grid.basis,
-                self._lattice, grid.shape, self._affine, back, accepted, iterations, target, error, ratio,
-            )  # fmt: skip
+            part = slice(start, stop)
+            self._solve(images[part], out[part], error[part], ratio[part], accepted, iterations)
 
-        for_chunks(work, count, 4096)
+        for_chunks(work, count, max(_CHUNK, 4 * int(self._grid.counts.prod())))
         return out, error, ratio
+
+    def _solve(
+        self, images: Floats, best: Floats, least: Floats, ratio: Floats, accepted: float, iterations: int
+    ) -> None:
+        """One chunk: sort, step, and again with those points that are not solved."""
+        from pliant.numerics import lattice_newton, tricubic
+
+        grid, left, back = self._grid, len(images), np.linalg.inv(self._affine)
+        active, order, rank = (np.arange(left, dtype=np.int32) for _ in range(3))
+        local, starts = np.zeros(3 * (left + 8)), np.empty(int(grid.counts.prod()) + 2, np.int64)
+        step, halvings = np.zeros(3 * left), np.zeros(left, np.int64)
+        flat, target = images.reshape(-1), best.reshape(-1)
+        trial = (images @ back[:3, :3].T + back[:3, 3]).reshape(-1)
+        for _ in range(iterations + 1):
+            tricubic.locate(trial, 0, left, grid.frame, grid.limits, grid.keep, grid.counts, order, rank, local, starts)
+            left = lattice_newton.advance(
+                starts, order, local, grid.frame, grid.counts, grid.stride, grid.basis, self._lattice, grid.shape,
+                self._affine, flat, accepted, active, trial, target, step, least, ratio, halvings,
+            )  # fmt: skip
+            if not left:
+                return

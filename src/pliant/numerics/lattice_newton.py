@@ -1,7 +1,6 @@
-"""The kernel that inverts x' = A x + t + a tricubic sum: Newton's method, a point at a time.
+"""The kernel that inverts x' = A x + t + a tricubic sum: Newton's method, eight points of a cell at a time.
 
-Points wander from cell to cell, so that they are not sorted: it is the 64 control values of one point that go
-through the arithmetic together. Each takes four places (x, y, z, 0), and a row of four along z is two vectors.
+Points wander from cell to cell, so that they are sorted anew before every step: that costs less than it spares.
 """
 
 from __future__ import annotations
@@ -9,141 +8,157 @@ from __future__ import annotations
 import numpy as np
 
 from pliant.numerics.compiling import inlined, kernel
-from pliant.numerics.lanes import get, load, put, spread, store
+from pliant.numerics.lanes import get, load, put, root, spread, store
+from pliant.numerics.tricubic import _corner, _tabulate, _tabulate_slopes
 
-_HALVINGS = 12  # of a step that does not lower the residual
-
-
-@inlined
-def _weights(basis, t, values, slopes):
-    for b in range(4):
-        values[b] = ((t * basis[3, b] + basis[2, b]) * t + basis[1, b]) * t + basis[0, b]
-        slopes[b] = (t * (3.0 * basis[3, b]) + 2.0 * basis[2, b]) * t + basis[1, b]
+HALVINGS = 12  # of a step that does not lower the residual
 
 
 @inlined
-def _column(lattice, at, down, w, half):
-    """The sum along x, for half a row along z."""
-    at = at + 8 * half
+def _cube_with_slopes(lattice, at, down_x, down_y, table, sums, to):
+    """The sum over 4 x 4 x 4 control values and its three slopes, stored at ``sums[to]``: 192 multiply-adds."""
+    value, along_x, along_y, along_z = spread(0.0), spread(0.0), spread(0.0), spread(0.0)
+    for i in range(4):
+        plane, plane_y, plane_z = spread(0.0), spread(0.0), spread(0.0)
+        for j in range(4):
+            row, slope = spread(0.0), spread(0.0)
+            for k in range(4):
+                control = get(lattice, at + i * down_x + j * down_y + 3 * k)
+                row = row + load(table, 128 + 8 * k) * control
+                slope = slope + load(table, 160 + 8 * k) * control
+            plane = plane + load(table, 64 + 8 * j) * row
+            plane_y = plane_y + load(table, 96 + 8 * j) * row
+            plane_z = plane_z + load(table, 64 + 8 * j) * slope
+        value = value + load(table, 8 * i) * plane
+        along_x = along_x + load(table, 32 + 8 * i) * plane
+        along_y = along_y + load(table, 8 * i) * plane_y
+        along_z = along_z + load(table, 8 * i) * plane_z
+    store(sums, to, value)
+    store(sums, to + 8, along_x)
+    store(sums, to + 16, along_y)
+    store(sums, to + 24, along_z)
+
+
+@inlined
+def _row(sums, c, affine, frame):
+    """Row c of the Jacobians of eight points, from the slopes in grid coordinates."""
+    u, v, w = load(sums, 32 * c + 8), load(sums, 32 * c + 16), load(sums, 32 * c + 24)
     return (
-        load(lattice, at) * w[0]
-        + load(lattice, at + down) * w[1]
-        + load(lattice, at + 2 * down) * w[2]
-        + load(lattice, at + 3 * down) * w[3]
+        u * frame[0, 0] + v * frame[1, 0] + w * frame[2, 0] + spread(affine[c, 0]),
+        u * frame[0, 1] + v * frame[1, 1] + w * frame[2, 1] + spread(affine[c, 1]),
+        u * frame[0, 2] + v * frame[1, 2] + w * frame[2, 2] + spread(affine[c, 2]),
     )
 
 
 @inlined
-def _evaluate(x, frame, limits, keep, grid, stride, basis, lattice, shape, affine, weights, rows, image, jacobian):
-    """The image (3,) and the Jacobian (3, 3) at a point (3,)."""
-    for c in range(3):
-        image[c] = affine[c, 0] * x[0] + affine[c, 1] * x[1] + affine[c, 2] * x[2] + affine[c, 3]
-        for a in range(3):
-            jacobian[c, a] = affine[c, a]
-    at = 0
-    for axis in range(3):
-        q = frame[axis, 0] * x[0] + frame[axis, 1] * x[1] + frame[axis, 2] * x[2] + frame[axis, 3]
-        if not keep[0, axis] <= q <= keep[1, axis]:
-            return
-        q = min(max(q, limits[0, axis]), limits[1, axis])
-        cell = min(max(np.floor(q), 0.0), grid[axis] - 1.0)
-        _weights(basis, q - cell, weights[axis, 0], weights[axis, 1])
-        at = at * shape[axis] + stride * int(cell)
-    down_x, down_y = 4 * shape[1] * shape[2], 4 * shape[2]
-    wx, sx, wy, sy, wz, sz = weights[0, 0], weights[0, 1], weights[1, 0], weights[1, 1], weights[2, 0], weights[2, 1]
-    for half in range(2):
-        value, along_x, along_y = spread(0.0), spread(0.0), spread(0.0)
-        for j in range(4):
-            column = _column(lattice, 4 * at + j * down_y, down_x, wx, half)
-            slope = _column(lattice, 4 * at + j * down_y, down_x, sx, half)
-            value = value + column * wy[j]
-            along_x = along_x + slope * wy[j]
-            along_y = along_y + column * sy[j]
-        store(rows, 8 * half, value)
-        store(rows, 16 + 8 * half, along_x)
-        store(rows, 32 + 8 * half, along_y)
-    for c in range(3):
-        moved, u, v, w = 0.0, 0.0, 0.0, 0.0
-        for k in range(4):
-            moved += wz[k] * get(rows, 4 * k + c)
-            u += wz[k] * get(rows, 16 + 4 * k + c)
-            v += wz[k] * get(rows, 32 + 4 * k + c)
-            w += sz[k] * get(rows, 4 * k + c)
-        image[c] += moved
-        for a in range(3):
-            jacobian[c, a] += u * frame[0, a] + v * frame[1, a] + w * frame[2, a]
+def _cross(a, b):
+    return a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]
 
 
 @inlined
-def _newton_step(m, residual, step):
-    """Solve m step = residual by Cramer's rule; a singular matrix gives the residual itself. The determinant."""
-    c00 = m[1, 1] * m[2, 2] - m[1, 2] * m[2, 1]
-    c01 = m[1, 2] * m[2, 0] - m[1, 0] * m[2, 2]
-    c02 = m[1, 0] * m[2, 1] - m[1, 1] * m[2, 0]
-    whole = m[0, 0] * c00 + m[0, 1] * c01 + m[0, 2] * c02
-    size = 0.0
+def _equations(here, at, length, sums, affine, frame, found):
+    """Newton's equations of eight points by Cramer's rule, stored in ``found``.
+
+    Eight of each: the adjugate times the residual (3), det J, the sum of J's squares, the residual's length, and the
+    residual (3).
+    """
+    x, y, z = load(here, at), load(here, length + at), load(here, 2 * length + at)
+    square, size = spread(0.0), spread(0.0)
     for c in range(3):
-        size += m[c, 0] * m[c, 0] + m[c, 1] * m[c, 1] + m[c, 2] * m[c, 2]
-    if abs(whole) <= 1e-14 * size * np.sqrt(size):
+        image = x * affine[c, 0] + y * affine[c, 1] + z * affine[c, 2] + spread(affine[c, 3])
+        residual = load(here, (3 + c) * length + at) - (image + load(sums, 32 * c))
+        size = size + residual * residual
+        store(found, 48 + 8 * c, residual)
+        row = _row(sums, c, affine, frame)
+        square = square + row[0] * row[0] + row[1] * row[1] + row[2] * row[2]
+    first, second, third = _row(sums, 0, affine, frame), _row(sums, 1, affine, frame), _row(sums, 2, affine, frame)
+    a, b, c = _cross(second, third), _cross(third, first), _cross(first, second)
+    r0, r1, r2 = load(found, 48), load(found, 56), load(found, 64)
+    store(found, 0, a[0] * r0 + b[0] * r1 + c[0] * r2)
+    store(found, 8, a[1] * r0 + b[1] * r1 + c[1] * r2)
+    store(found, 16, a[2] * r0 + b[2] * r1 + c[2] * r2)
+    store(found, 24, first[0] * a[0] + first[1] * a[1] + first[2] * a[2])
+    store(found, 32, square)
+    store(found, 40, root(size))
+
+
+@inlined
+def _judge(here, at, length, found, lane, point, best, step, least, ratio, halvings):
+    """Keep a trial that lowers the residual, with the step from there; go half as far from the best one otherwise."""
+    size, whole, square = get(found, 40 + lane), get(found, 24 + lane), get(found, 32 + lane)
+    if size < get(least, point):
+        regular = whole * whole > 1e-28 * square * square * square
+        factor = 1.0 / whole if regular else 1.0
         for c in range(3):
-            step[c] = residual[c]
-        return whole
-    a, b, c = residual[0], residual[1], residual[2]
-    step[0] = (
-        a * c00 + b * (m[0, 2] * m[2, 1] - m[0, 1] * m[2, 2]) + c * (m[0, 1] * m[1, 2] - m[0, 2] * m[1, 1])
-    ) / whole
-    step[1] = (
-        a * c01 + b * (m[0, 0] * m[2, 2] - m[0, 2] * m[2, 0]) + c * (m[0, 2] * m[1, 0] - m[0, 0] * m[1, 2])
-    ) / whole
-    step[2] = (
-        a * c02 + b * (m[0, 1] * m[2, 0] - m[0, 0] * m[2, 1]) + c * (m[0, 0] * m[1, 1] - m[0, 1] * m[1, 0])
-    ) / whole
-    return whole
+            put(best, 3 * point + c, get(here, c * length + at))
+            put(step, 3 * point + c, factor * get(found, (0 if regular else 48) + 8 * c + lane))
+        put(least, point, size)
+        put(ratio, point, whole)
+        halvings[point] = 0
+    else:
+        for c in range(3):
+            put(step, 3 * point + c, 0.5 * get(step, 3 * point + c))
+        halvings[point] += 1
+
+
+@inlined
+def _keep_unsolved(count, accepted, active, trial, best, step, least, halvings):
+    """Write the active points that go on, and their next trials, to the front; their number."""
+    left = 0
+    for place in range(count):
+        point = get(active, place)
+        if get(least, point) <= accepted or halvings[point] > HALVINGS:
+            continue
+        active[left] = point
+        for c in range(3):
+            put(trial, 3 * left + c, get(best, 3 * point + c) + get(step, 3 * point + c))
+        left += 1
+    return left
 
 
 @kernel
-def solve(
-    start, stop, images, frame, limits, keep, grid, stride, basis, lattice, shape, affine, back, accepted, iterations,
-    out, error, ratio,
+def advance(
+    starts, order, local, frame, grid, stride, basis, lattice, shape, affine, images, accepted,
+    active, trial, best, step, least, ratio, halvings,
 ):  # fmt: skip
-    """Pre-images of images [start, stop), flat; the length of each residual, and det J at each pre-image.
+    """One step of Newton's method for a chunk's active points; the number of those that are still active.
 
-    ``lattice`` holds four places a control value, flat, and ends with room for one vector; ``affine`` (3, 4) is A and
-    t, ``back`` (3, 4) its inverse; the other arguments are those of :mod:`pliant.numerics.tricubic`.
+    Parameters
+    ----------
+    starts, order, local, frame, grid, stride, basis, lattice, shape
+        The trial points, sorted by cell, and the sum: see :mod:`pliant.numerics.tricubic`.
+    affine
+        (3, 4) A and t.
+    images, accepted
+        What the chunk's points shall become, flat; the residual that counts as solved.
+    active, trial
+        (k,) numbers of the active points in the chunk, and where to try next, flat; overwritten.
+    best, step, least, ratio, halvings
+        Of each point in the chunk: the best place so far, the step from there, the residual's length and det J
+        there, and how often the step was halved.
     """
-    weights, rows = np.empty((3, 2, 4)), np.empty(48)
-    x, best, step = np.empty(3), np.empty(3), np.empty(3)
-    image, residual, jacobian = np.empty(3), np.empty(3), np.empty((3, 3))
-    for n in range(start, stop):
+    length, cells, count = len(local) // 3, len(starts) - 2, starts[-1]
+    table, sums, here, found = np.empty(192), np.zeros(96), np.zeros(6 * length), np.empty(72)
+    down_x, down_y = shape[1] * shape[2] * 3, shape[2] * 3
+    for at in range(count):  # trial points and images, sorted as the cells' points
+        place = get(order, at)
+        point = get(active, place)
         for c in range(3):
-            y0, y1, y2 = get(images, 3 * n), get(images, 3 * n + 1), get(images, 3 * n + 2)
-            x[c] = back[c, 0] * y0 + back[c, 1] * y1 + back[c, 2] * y2 + back[c, 3]
-            step[c] = 0.0
-        least, found, halvings, taken = np.inf, 1.0, 0, 0
-        while True:
-            _evaluate(
-                x, frame, limits, keep, grid, stride, basis, lattice, shape, affine, weights, rows, image, jacobian
-            )
-            size = 0.0
-            for c in range(3):
-                residual[c] = get(images, 3 * n + c) - image[c]
-                size += residual[c] * residual[c]
-            size = np.sqrt(size)
-            if size < least:
-                least, halvings = size, 0
+            put(here, c * length + at, get(trial, 3 * place + c))
+            put(here, (3 + c) * length + at, get(images, 3 * point + c))
+    for cell in range(cells + 1):
+        if cell == cells:  # where nothing moves but by A and t
+            sums[:] = 0.0
+        for at in range(starts[cell], starts[cell + 1], 8):
+            if cell < cells:
+                for axis in range(3):
+                    _tabulate(table, 64 * axis, basis, load(local, axis * length + at))
+                    _tabulate_slopes(table, 64 * axis + 32, basis, load(local, axis * length + at))
+                corner = _corner(cell, grid, stride, shape)
                 for c in range(3):
-                    best[c] = x[c]
-                found = _newton_step(jacobian, residual, step)
-                taken += 1
-            else:
-                halvings += 1
-                for c in range(3):
-                    step[c] *= 0.5
-            if least <= accepted or taken > iterations or halvings > _HALVINGS:
-                break
-            for c in range(3):
-                x[c] = best[c] + step[c]
-        for c in range(3):
-            put(out, 3 * n + c, best[c])
-        error[n] = least
-        ratio[n] = found
+                    _cube_with_slopes(lattice, corner + c, down_x, down_y, table, sums, 32 * c)
+            _equations(here, at, length, sums, affine, frame, found)
+            for i in range(min(8, starts[cell + 1] - at)):
+                point = get(active, get(order, at + i))
+                _judge(here, at + i, length, found, i, point, best, step, least, ratio, halvings)
+    return _keep_unsolved(count, accepted, active, trial, best, step, least, halvings)

@@ -90,7 +90,7 @@ def solve(
     if not len(images):
         none = np.zeros(0, bool)
         return Solution(images, images.copy(), np.zeros(0), none, none)
-    scale = float(np.linalg.norm(images.max(axis=0) - images.min(axis=0))) or 1.0
+    scale = float(np.linalg.norm([np.ptp(images[:, axis]) for axis in range(3)])) or 1.0
     accepted = tolerance * scale
     if fused is None:
         x = images.copy()
