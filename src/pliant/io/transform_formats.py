@@ -7,75 +7,13 @@ one entry below. Modules are imported when a file of theirs turns up.
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, replace
-from importlib import import_module
+from dataclasses import replace
 from pathlib import Path
-from typing import Protocol, cast
 
-from pliant.deformer import Deformer, SpaceDeformer
 from pliant.io.gzipped import beginning
-from pliant.io.report import LossReport
-from pliant.io.transform_options import ReadOptions
+from pliant.io.transform_format import Conventions, TransformFormat
 
 _HEAD = 4096  # bytes that are enough to tell formats apart
-
-
-class FormatModule(Protocol):
-    """What the module of a format offers."""
-
-    def read(self, path: Path, data: bytes, options: ReadOptions) -> SpaceDeformer:
-        """The deformer that the bytes of a file describe."""
-
-    def write(self, deformer: Deformer, path: Path, *, strict: bool) -> LossReport:
-        """Write the deformer, and tell what the file could not hold."""
-
-
-@dataclass(frozen=True)
-class Conventions:
-    """What the numbers of a format mean.
-
-    Parameters
-    ----------
-    holds
-        The maps that it can hold.
-    space
-        The coordinates of its files; pliant hands medical transforms out in RAS.
-    direction
-        What its owners use the map for.
-    values
-        What is stored for each control point, and in which order.
-    outside
-        What happens beyond its lattice or image.
-    precision
-        How numbers are written.
-    """
-
-    holds: str
-    space: str
-    direction: str
-    values: str
-    outside: str
-    precision: str
-
-
-@dataclass(frozen=True)
-class TransformFormat:
-    """A format: how it is called, how its files end and begin, the module that knows it, and what it means.
-
-    ``shared`` endings are those of other files too: there, the content must say that it is this format.
-    """
-
-    name: str
-    endings: tuple[str, ...]
-    signature: re.Pattern[bytes]
-    module: str
-    conventions: Conventions
-    shared: bool = False
-
-    def load(self) -> FormatModule:
-        """The format's module."""
-        return cast(FormatModule, import_module(f"pliant.io.{self.module}"))
-
 
 _RAS, _LPS, _OWN = "RAS, mm", "LPS, mm; turned to RAS", "the mesh's own"
 _PULL, _PUSH = "pull-back", "push-forward"
@@ -105,6 +43,7 @@ FORMATS = (
             "not said: edge=",
             "six decimals",
         ),
+        "bspline",
     ),
     TransformFormat(
         "zxhproj AFF",
@@ -112,6 +51,7 @@ FORMATS = (
         re.compile(rb"#\s*(matrix|rotation center)"),
         "zxhproj_aff",
         Conventions("affine maps", _RAS, _PULL, "a 4 x 4 matrix, row by row", "–", "six decimals"),
+        "affine",
     ),
     TransformFormat(
         "elastix parameters",
@@ -119,6 +59,8 @@ FORMATS = (
         re.compile(rb"\(\s*Transform(Parameters)?\s"),
         "elastix",
         replace(_ITK, holds="affine maps, B-splines, chains of them (composed or added)"),
+        "bspline",
+        "identity",
         shared=True,
     ),
     TransformFormat(
@@ -127,12 +69,21 @@ FORMATS = (
         re.compile(rb"\A\s*(?:(?:[-+.\deE]+[ \t,]+){3}[-+.\deE]+\s+){3}(?:0(?:\.0*)?[ \t,]+){3}1(?:\.0*)?\s*\Z"),
         "niftyreg_affine",
         Conventions("affine maps", _RAS, _PULL, "a 4 x 4 matrix, row by row", "–", "float64"),
+        "affine",
         shared=True,
     ),
     TransformFormat(
-        "ITK text", (".tfm", ".txt"), re.compile(rb"\A\s*#Insight Transform File"), "itk_text", _ITK, shared=True
+        "ITK text",
+        (".tfm", ".txt"),
+        re.compile(rb"\A\s*#Insight Transform File"),
+        "itk_text",
+        _ITK,
+        "grid",
+        shared=True,
     ),
-    TransformFormat("ITK HDF5", (".h5", ".hdf5"), re.compile(rb"\A\x89HDF\r\n\x1a\n"), "itk_hdf5", _ITK, shared=True),
+    TransformFormat(
+        "ITK HDF5", (".h5", ".hdf5"), re.compile(rb"\A\x89HDF\r\n\x1a\n"), "itk_hdf5", _ITK, "grid", shared=True
+    ),
     TransformFormat(
         "NIfTI transform",
         (".nii.gz", ".nii"),
@@ -146,6 +97,7 @@ FORMATS = (
             "lattices: not said: edge=; fields: nothing moves",
             "float64; the grid's place float32",
         ),
+        "grid",
         shared=True,
     ),
     TransformFormat(
@@ -154,6 +106,7 @@ FORMATS = (
         re.compile(rb"(?s)\A\s*(?:ObjectType\s*=\s*Image|NDims\s*=).*?ElementNumberOfChannels\s*=\s*3\b"),
         "metaimage_field",
         _FIELD,
+        "grid",
         shared=True,
     ),
     TransformFormat(
@@ -169,6 +122,7 @@ FORMATS = (
             "clamp or zero, as the file says (types below 70: edge=)",
             "float64",
         ),
+        "bspline",
     ),
     TransformFormat(
         "PyGeM parameters",
@@ -183,6 +137,7 @@ FORMATS = (
             "nothing moves",
             "float64",
         ),
+        "bernstein",
     ),
     TransformFormat(
         "Plot3D FFD box",
@@ -197,6 +152,7 @@ FORMATS = (
             "nothing moves",
             "float64",
         ),
+        "clamped",
         shared=True,
     ),
 )
