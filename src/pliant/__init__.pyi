@@ -25,6 +25,13 @@ from .io.transforms import read_transform as read_transform
 from .io.transforms import write_transform as write_transform
 from .mesh import PolygonMesh as PolygonMesh
 from .rendering.pictures import render as render
+from .shape.bspline_kernel import BSplineKernel as BSplineKernel
+from .shape.kernels import ExponentialKernel as ExponentialKernel
+from .shape.kernels import GaussianKernel as GaussianKernel
+from .shape.kernels import InverseMultiquadricKernel as InverseMultiquadricKernel
+from .shape.kernels import MaternKernel as MaternKernel
+from .shape.kernels import RationalQuadraticKernel as RationalQuadraticKernel
+from .shape.model import ShapeModel as ShapeModel
 from .space.affine import Affine as Affine
 from .space.bend import Bend as Bend
 from .space.bezier_ffd import BezierFFD as BezierFFD

@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+from pliant.cli.check import check
 from pliant.cli.convert import convert
 from pliant.cli.deform import deform
 from pliant.cli.deformer_options import DeformingCommand
@@ -21,7 +22,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,  # bugs are reported by the entry point
     epilog=EXPLAINED,
 )
-for command in (deform, info, convert, render, demo):
+for command in (deform, info, check, convert, render, demo):
     app.command(cls=DeformingCommand if command in (deform, render) else None)(command)
 
 

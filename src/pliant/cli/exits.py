@@ -26,7 +26,7 @@ Exit codes:
   2  wrong usage, or something that is not installed
   3  a file that cannot be read or written, or does not fit
   4  no result: not converged, or not finite
-  5  refused by a quality gate: --strict, and something would be lost
+  5  refused by a quality gate: --strict, and something would be lost; or a gate of check
 """
 
 _BY_KIND = (

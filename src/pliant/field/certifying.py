@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from math import inf
-
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -42,8 +40,9 @@ def certify(
     Theorem*, 2002, sec. 6.2). Where derivatives jump, at the rim of a Bézier lattice, the same follows from the
     mapping degree: it is one, and every pre-image counts positively.
 
-    Affine maps are decided exactly; placed and inverted maps from what they place or invert; compositions from the
-    products of their parts' bounds. All others are only sampled: they are never proved fold-free.
+    Where det J is constant (affine maps, scales, twists, squashes, waves) it is known exactly; placed and inverted
+    maps are decided from what they place or invert, compositions from the products of their parts' bounds. All others
+    are only sampled: they are never proved fold-free.
 
     Parameters
     ----------
@@ -159,5 +158,5 @@ def _sampled(deformer: SpaceDeformer, proof: Certificate, bounds: tuple[ArrayLik
     at = int(ratio.argmin())
     least, greatest = float(ratio[at]), float(ratio.max())
     status: Status = "folds" if least <= 0 else "undecided"
-    lower, upper = (-inf, inf) if proof.method == "sampled" else (min(proof.lower, least), max(proof.upper, greatest))
-    return Certificate(status, lower, upper, least, greatest, points[at], None, "sampled")
+    lower, upper = min(proof.lower, least), max(proof.upper, greatest)
+    return Certificate(status, lower, upper, least, greatest, points[at], None, "sampled", proof.subdivisions)

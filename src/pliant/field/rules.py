@@ -1,20 +1,27 @@
-"""What can be said of det J without cells: affine, placed, inverted and composed maps."""
+"""What can be said of det J without cells: of affine maps, of those that keep volume, of maps made of others."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import replace
+from fractions import Fraction
 from math import inf
 
 import numpy as np
 
 from pliant.deformer import SpaceDeformer
-from pliant.field.certificate import Certificate
+from pliant.field.certificate import Certificate, Status
 from pliant.mesh import Points
 from pliant.numerics.polynomial_cells import determinant, rational
 from pliant.space.affine import Affine
+from pliant.space.compose import Composition
 from pliant.space.inverse import Inverse
 from pliant.space.placed import Placed
+from pliant.space.scale import Scale
+from pliant.space.sine import Sine
+from pliant.space.squash import Squash
+from pliant.space.twist import Twist
+from pliant.space.wave import Wave
 
 Prove = Callable[[SpaceDeformer], Certificate]
 
@@ -22,22 +29,32 @@ Prove = Callable[[SpaceDeformer], Certificate]
 def certificate_by_rule(deformer: SpaceDeformer, prove: Prove) -> Certificate | None:
     """What follows from the kind of a map and from proofs about its parts; None if nothing does."""
     if isinstance(deformer, Affine):
-        return _affine(deformer)
+        return _constant(determinant(rational(deformer.linear)))
+    if isinstance(deformer, Scale):
+        return _constant(Fraction(deformer.x) * Fraction(deformer.y) * Fraction(deformer.z))
+    if isinstance(deformer, Twist | Squash | Sine | Wave):
+        return _constant(Fraction(1))  # by construction; all are undone section by section
     if isinstance(deformer, Placed):
         return _placed(deformer, prove(deformer.deformer))
     if isinstance(deformer, Inverse):
         return _inverted(deformer, prove(deformer.deformer))
+    if isinstance(deformer, Composition):
+        return _composed([prove(part) for part in deformer.deformers])
     return None
 
 
-def _affine(deformer: Affine) -> Certificate:
-    """det A, in rational arithmetic."""
-    exact = determinant(rational(deformer.linear))
+def _constant(exact: Fraction) -> Certificate:
+    """The same det J everywhere, known exactly: such a map is a bijection unless det J = 0."""
     value = float(exact)
-    lower, upper = float(np.nextafter(value, -inf)), float(np.nextafter(value, inf))
-    if exact <= 0:
-        return Certificate("folds", lower, upper, value, value, np.zeros(3), exact != 0, "exact")
-    return Certificate("fold-free", max(lower, 0.0), upper, value, value, np.zeros(3), True, "exact")
+    lower, upper = (value, value) if exact == Fraction(value) else _widened(value, value)
+    status: Status = "fold-free" if exact > 0 else "folds"
+    return Certificate(status, lower, upper, value, value, np.zeros(3), exact != 0, "exact")
+
+
+def _widened(lower: float, upper: float) -> tuple[float, float]:
+    """Bounds that stay bounds however their computation was rounded, once; positive ones stay positive."""
+    below = float(np.nextafter(lower, -inf))
+    return max(below, 5e-324) if lower > 0 else below, float(np.nextafter(upper, inf))
 
 
 def _placed(deformer: Placed, inner: Certificate) -> Certificate:
@@ -51,10 +68,23 @@ def _inverted(deformer: Inverse, inner: Certificate) -> Certificate:
         return replace(inner, lower=-inf, upper=inf, least=None, greatest=None, status="undecided", method="sampled")
     assert inner.least is not None
     assert inner.greatest is not None
-    lower = float(np.nextafter(1 / inner.upper, -inf))
-    upper = float(np.nextafter(1 / inner.lower, inf))
+    lower, upper = _widened(1 / inner.upper, 1 / inner.lower)
     point = _carried(deformer.deformer, inner.point)
     return replace(inner, lower=lower, upper=upper, least=1 / inner.greatest, greatest=1 / inner.least, point=point)
+
+
+def _composed(parts: list[Certificate]) -> Certificate | None:
+    """The determinant of a product is the product: its bounds are among the products of the parts' bounds."""
+    lower, upper = 1.0, 1.0
+    for part in parts:
+        if not np.isfinite([part.lower, part.upper]).all():
+            return None
+        products = [one * other for one in (lower, upper) for other in (part.lower, part.upper)]
+        lower, upper = _widened(min(products), max(products))
+    injective = True if all(part.injective for part in parts) else None
+    status: Status = "fold-free" if lower > 0 else "undecided"
+    halved = sum(part.subdivisions for part in parts)
+    return Certificate(status, lower, upper, injective=injective, method="bounds", subdivisions=halved)
 
 
 def _carried(deformer: SpaceDeformer, point: Points | None) -> Points | None:
