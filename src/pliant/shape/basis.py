@@ -59,9 +59,11 @@ class Basis(ABC):
     def gram(self, precision: Floats) -> Floats:
         """Qᵀ P Q with a precision (n,) or (n, 3, 3) a point: (r, r) where all is scalar, else (k, k)."""
 
-    @abstractmethod
     def combined(self, matrix: Floats, deviations: Floats) -> Basis:
         """The fields Q M: (k, j) or, for scalar ones, (r, j) matrices."""
+        from pliant.shape.mixed_basis import MixedBasis
+
+        return MixedBasis(self, matrix, deviations)
 
     @abstractmethod
     def columns(self) -> Floats:
@@ -115,9 +117,6 @@ class ScalarBasis(Basis):
         gram = (self.factors.T @ weighted).reshape(self.rank, self.rank, 3, 3)
         return np.asarray(gram.transpose(0, 2, 1, 3).reshape(self.count, self.count))
 
-    def combined(self, matrix: Floats, deviations: Floats) -> Basis:
-        return MixedBasis(self, matrix, deviations)
-
     def columns(self) -> Floats:
         result = np.zeros((self.size, 3, self.rank, 3))
         for axis in range(3):
@@ -144,7 +143,7 @@ class FullBasis(Basis):
 
     @property
     def _flat(self) -> Floats:
-        return self.fields.reshape(3 * self.size, -1)
+        return self.fields.reshape(3 * self.size, self.rank)
 
     def apply(self, coefficients: Floats, dtype: DTypeLike = np.float64) -> NDArray[np.floating]:
         shape = (*coefficients.shape[:-1], self.size, 3)
@@ -160,65 +159,10 @@ class FullBasis(Basis):
     def gram(self, precision: Floats) -> Floats:
         """(k, k)."""
         weighted = precision[:, None, None] * self.fields if precision.ndim == 1 else precision @ self.fields
-        return np.asarray(self._flat.T @ weighted.reshape(3 * self.size, -1))
-
-    def combined(self, matrix: Floats, deviations: Floats) -> Basis:
-        return MixedBasis(self, matrix, deviations)
+        return np.asarray(self._flat.T @ weighted.reshape(3 * self.size, self.rank))
 
     def columns(self) -> Floats:
         return self.fields
-
-
-@dataclass(frozen=True, eq=False)
-class MixedBasis(Basis):
-    """Fields Q M of another basis: what conditioning makes, without touching the points."""
-
-    base: Basis
-    matrix: Floats
-    deviations: Floats
-
-    @property
-    def scalar(self) -> bool:  # type: ignore[override]
-        return self.base.scalar and len(self.matrix) == self.base.rank
-
-    @property
-    def size(self) -> int:
-        """n, the number of points."""
-        return self.base.size
-
-    def apply(self, coefficients: Floats, dtype: DTypeLike = np.float64) -> NDArray[np.floating]:
-        return self.base.apply(self.mixed(coefficients), dtype)
-
-    def mixed(self, coefficients: Floats) -> Floats:
-        """(..., k) coefficients of the other basis."""
-        if not self.scalar:
-            return np.asarray(coefficients @ self.matrix.T)
-        shape = coefficients.shape[:-1]
-        return np.asarray((self.matrix @ coefficients.reshape(*shape, self.rank, 3)).reshape(*shape, -1))
-
-    def transpose(self, values: Floats) -> Floats:
-        inner = self.base.transpose(values)
-        return np.asarray((self.matrix.T @ (inner.reshape(-1, 3) if self.scalar else inner)).reshape(-1))
-
-    def rows(self, chosen: Integers, weights: Floats | None = None) -> Basis:
-        return MixedBasis(self.base.rows(chosen, weights), self.matrix, self.deviations)
-
-    def gram(self, precision: Floats) -> Floats:
-        inner = self.base.gram(precision)
-        matrix = self.matrix
-        if len(inner) != len(matrix):
-            matrix, inner = _alike(matrix, inner)
-        return np.asarray(matrix.T @ inner @ matrix)
-
-    def combined(self, matrix: Floats, deviations: Floats) -> Basis:
-        own = self.matrix
-        if self.scalar and len(matrix) != self.rank:
-            own = everywhere(own)
-        return MixedBasis(self.base, own @ matrix, deviations)
-
-    def columns(self) -> Floats:
-        matrix = everywhere(self.matrix) if self.scalar else self.matrix
-        return np.asarray(self.base.columns() @ matrix)
 
 
 def many(factors: Floats, flat: NDArray[np.floating], count: int, dtype: DTypeLike) -> NDArray[np.floating]:
@@ -243,10 +187,3 @@ def _rows(values: Floats, chosen: Integers, weights: Floats | None) -> Floats:
     if weights is None:
         return values[chosen]
     return np.asarray(np.einsum("mc,mc...->m...", weights, values[chosen]))
-
-
-def _alike(matrix: Floats, inner: Floats) -> tuple[Floats, Floats]:
-    """A scalar matrix beside one of all coordinates: what is scalar is written out."""
-    if len(inner) < len(matrix):
-        return matrix, everywhere(inner)
-    return everywhere(matrix), inner
