@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import numpy as np
+import pytest
 
+from pliant.errors import InvalidDeformer
 from pliant.mesh import PolygonMesh
 from pliant.space.affine import Affine
 from pliant.space.bspline_ffd import BSplineFFD
@@ -58,3 +60,32 @@ def test_a_half_turn_carries_normals_exactly():
     assert np.allclose(placed.points, flipped.points, atol=1e-14)
     assert np.allclose(placed.vertex_attributes["normals"], flipped.vertex_attributes["normals"], atol=1e-14)
     assert np.allclose(placed.vertex_attributes["normals"], placed.vertex_normals, atol=1e-12)
+
+
+def test_only_a_new_relative_placement_is_bound_anew():
+    lattice = BSplineFFD.around(POINTS, shape=(4, 4, 4), margin=0.2)
+    lattice = lattice.moved(lattice.rest + 0.05)
+    tool = place(lattice, FRAME)
+    bound = tool.bind(POINTS)
+    ride = Affine.rotation([1, 0, 2], 0.4) @ Affine.translation([5, 0, 0])
+    together = bound.at(ride @ FRAME, ride(POINTS))
+    assert together._inner is bound._inner
+    assert np.allclose(together.deform(), ride(tool(POINTS)), atol=1e-12)
+    over = bound.at(ride @ FRAME)
+    assert over._inner is not bound._inner
+    assert np.allclose(over.deform(), tool.at(ride @ FRAME)(POINTS), atol=1e-12)
+    fewer = bound.at(FRAME, POINTS[:4])
+    assert np.allclose(fewer.deform(), tool(POINTS[:4]), atol=1e-12)
+
+
+def test_the_object_through_the_tool_is_the_tool_over_the_object_carried():
+    lattice = BSplineFFD.around(POINTS, shape=(4, 4, 4))
+    tool = lattice.moved(lattice.rest * 1.1)
+    ride = Affine.translation([0.3, 0, 0])
+    through = tool(ride(POINTS))
+    assert np.allclose(through, ride(place(tool, ride.inverted())(POINTS)), atol=1e-12)
+
+
+def test_only_maps_of_space_are_placed():
+    with pytest.raises(InvalidDeformer, match="no map of space"):
+        place("smooth", FRAME)

@@ -30,7 +30,7 @@ class Landmarks:
     Parameters
     ----------
     names
-        (k,) one a landmark.
+        (k,) one a landmark; blanks and line ends within become single blanks.
     points
         (k, 3) positions, as in the file.
     space
@@ -53,7 +53,7 @@ class Landmarks:
     covariances: Floats | None = None
 
     def __post_init__(self) -> None:
-        names, points = tuple(map(str, self.names)), np.asarray(self.points, np.float64).reshape(-1, 3)
+        names, points = tuple(map(_one_line, self.names)), np.asarray(self.points, np.float64).reshape(-1, 3)
         if len(names) != len(points):
             raise InvalidParameter(f"{len(points)} landmarks have {len(names)} names: each needs one")
         bad = np.flatnonzero(~np.isfinite(points).all(axis=1))
@@ -61,7 +61,7 @@ class Landmarks:
             raise InvalidParameter(f"landmark {names[bad[0]]!r} is not finite: {points[bad[0]].tolist()}")
         if self.space is not None and self.space not in get_args(Space):
             raise InvalidParameter(f"space is {self.space!r}; it must be 'RAS', 'LPS' or None")
-        words = tuple(map(str, self.descriptions)) or ("",) * len(names)
+        words = tuple(map(_one_line, self.descriptions)) or ("",) * len(names)
         covariances = np.full((len(names), 3, 3), np.nan) if self.covariances is None else self.covariances
         if len(words) != len(names) or np.shape(covariances) != (len(names), 3, 3):
             raise InvalidParameter("descriptions and covariances need one entry a landmark")
@@ -179,6 +179,10 @@ def numbers(path: Path, values: Any, what: str, *, line: int | None = None) -> F
     if array.shape != (3,) or not np.isfinite(array).all():
         raise UnreadableFile(path, f"{what} is {values!r}, not three finite numbers", "correct it", line=line)
     return array
+
+
+def _one_line(text: object) -> str:
+    return " ".join(str(text).split())
 
 
 def lost(landmarks: Landmarks, *, descriptions: bool = False, covariances: bool = False) -> tuple[str, ...]:

@@ -44,10 +44,10 @@ def csv(landmarks: Landmarks) -> Written:
     """Columns name, x, y, z, and description where there is one."""
     described = any(landmarks.descriptions)
     out = io.StringIO()
-    writer = lines.writer(out, lineterminator="\n")
+    writer = lines.writer(out, lineterminator="\n", quoting=lines.QUOTE_NONNUMERIC)  # a name may begin with #
     writer.writerow(["name", "x", "y", "z", *(["description"] if described else [])])
     for name, point, words in zip(landmarks.names, landmarks.points.tolist(), landmarks.descriptions, strict=True):
-        writer.writerow([name, *map(repr, point), *([words] if described else [])])
+        writer.writerow([name, *point, *([words] if described else [])])
     spaceless = () if landmarks.space is None else (f"that they are {landmarks.space}",)
     return out.getvalue().encode(), (*spaceless, *lost(landmarks, covariances=True)), ()
 

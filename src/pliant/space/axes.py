@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
@@ -9,6 +11,23 @@ from pliant.errors import InvalidDeformer, InvalidTarget
 from pliant.mesh import PolygonMesh, as_points
 
 Floats = NDArray[np.float64]
+
+
+def one_number(name: str, value: Any) -> float:
+    """A finite number.
+
+    Raises
+    ------
+    InvalidDeformer
+        Anything else.
+    """
+    try:
+        number = float(value)
+    except (TypeError, ValueError) as error:
+        raise InvalidDeformer(f"{name} is {value!r}; a number is needed") from error
+    if not np.isfinite(number):
+        raise InvalidDeformer(f"{name} is {number}; a finite number is needed")
+    return number
 
 
 def three_numbers(name: str, values: ArrayLike) -> Floats:

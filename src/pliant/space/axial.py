@@ -30,7 +30,7 @@ from pliant.mesh import Points, PolygonMesh, as_points
 from pliant.numerics.ragged import frozen
 from pliant.numerics.sections import Entries, displaced, jacobians, section_of
 from pliant.space.affine import Axis
-from pliant.space.axes import extent_along, three_numbers, unit_axis
+from pliant.space.axes import extent_along, one_number, three_numbers, unit_axis
 
 Floats = NDArray[np.float64]
 Numbers = NDArray[Any]
@@ -75,10 +75,7 @@ class AxialDeformer(SpaceDeformer):
         unit_axis(self.axis)
         object.__setattr__(self, "bounds", _checked_bounds(self.bounds))
         for name in self.parameters:
-            value = getattr(self, name)
-            if not (np.isscalar(value) or np.ndim(value) == 0) or not np.isfinite(float(value)):
-                raise InvalidDeformer(f"{name} is {value!r}; a finite number is needed")
-            object.__setattr__(self, name, float(value))
+            object.__setattr__(self, name, one_number(name, getattr(self, name)))
 
     @classmethod
     def around(cls, target: PolygonMesh | ArrayLike, **fields: Any) -> Self:

@@ -12,11 +12,11 @@ from typing import Any, ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pliant.errors import InvalidDeformer, NotConverged, PliantWarning
+from pliant.errors import NotConverged, PliantWarning
 from pliant.mesh import Points, as_points
 from pliant.numerics.sections import Entries, section_of
 from pliant.space.affine import Axis
-from pliant.space.axes import unit_axis
+from pliant.space.axes import one_number, unit_axis
 from pliant.space.axial import AxialDeformer, Numbers
 
 Floats = NDArray[np.float64]
@@ -61,8 +61,8 @@ class Bend(AxialDeformer):
     def __post_init__(self) -> None:
         super().__post_init__()
         self._frame  # noqa: B018 -- a normal along the axis is refused now, not later
-        if self.center is not None and not np.isfinite(self.center):
-            raise InvalidDeformer(f"the center of a bend is {self.center}; a finite position is needed")
+        if self.center is not None:
+            object.__setattr__(self, "center", one_number("center", self.center))
 
     @property
     def along(self) -> Floats:
@@ -106,7 +106,9 @@ class Bend(AxialDeformer):
         local = images @ frame[:, :3].T + frame[:, 3]
         height, offset = local[:, 0], local[:, 2] - center
         ends = np.array(self.bounds) - center
-        theta = np.clip(np.arctan2(k * offset, 1 - k * height), *np.sort(k * ends))
+        middle = k * ends.mean()
+        turn = np.arctan2(k * offset, 1 - k * height) - middle
+        theta = np.clip(middle + np.remainder(turn + np.pi, 2 * np.pi) - np.pi, *np.sort(k * ends))
         bent = theta / k if k else np.clip(offset, *ends)
         foot_z, foot_s = bent * np.sin(theta / 2) * _sinc(theta / 2), bent * _sinc(theta)
         z, s = height - foot_z, offset - foot_s  # seen from the foot on the arc, then turned back
@@ -148,7 +150,7 @@ class Bend(AxialDeformer):
 
     @property
     def _center(self) -> float:
-        return sum(self.bounds) / 2 if self.center is None else float(self.center)
+        return sum(self.bounds) / 2 if self.center is None else self.center
 
     def _split(self, q: Floats) -> tuple[Floats, Floats]:
         """Positions from the center: what of them is bent, and what goes on straight."""
