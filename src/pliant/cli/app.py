@@ -14,6 +14,7 @@ from pliant.cli.demo import demo
 from pliant.cli.exits import EXPLAINED
 from pliant.cli.info import info
 from pliant.cli.render import render
+from pliant.cli.warp import warp
 
 app = typer.Typer(
     name="pliant",
@@ -22,7 +23,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,  # bugs are reported by the entry point
     epilog=EXPLAINED,
 )
-for command in (deform, info, check, convert, render, demo):
+for command in (deform, warp, info, check, convert, render, demo):
     app.command(cls=DeformingCommand if command in (deform, render) else None)(command)
 
 

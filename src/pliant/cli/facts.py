@@ -8,9 +8,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pliant.deformer import SpaceDeformer
+from pliant.io.file_facts import FileFacts
+from pliant.io.images import Image
 from pliant.io.zxhproj_header import AFFHeader, FFDHeader
 from pliant.mesh import PolygonMesh
 from pliant.space.affine import Affine
+from pliant.space.compose import Composition
+from pliant.space.summed import Summed
 
 _SAMPLES = 40_000  # points at which det J is looked at
 
@@ -45,9 +49,13 @@ def of_transform(deformer: SpaceDeformer) -> dict[str, Any]:
     header = getattr(deformer, "carrier", None)
     if isinstance(header, FFDHeader):
         found |= {"variant": header.variant, "variant_because": header.reason, "dimension": header.dimension}
-    for name in ("direction", "edge"):
+    if isinstance(header, FileFacts):
+        found |= header.facts
+    for name in ("direction", "edge", "interpolation", "outside"):
         if hasattr(deformer, name):
             found[name] = getattr(deformer, name)
+    if isinstance(deformer, Composition | Summed):
+        return found | {"parts": [type(part).__name__ for part in deformer.deformers]}
     if isinstance(deformer, Affine):
         found |= {"matrix": deformer.matrix.tolist(), "det_J": float(np.linalg.det(deformer.linear))}
         return found | (
@@ -55,8 +63,27 @@ def of_transform(deformer: SpaceDeformer) -> dict[str, Any]:
             if isinstance(header, AFFHeader)
             else {}
         )
+    affine = getattr(deformer, "affine", np.eye(4))
+    if not np.array_equal(affine, np.eye(4)):
+        found["affine_part"] = affine.tolist()
     rest = deformer.rest
     return found | _lattice(rest) | _strength(deformer, rest)
+
+
+def of_image(image: Image) -> dict[str, Any]:
+    """Size, place and values."""
+    low, high = float(image.values.min()), float(image.values.max())
+    return {
+        "kind": "image",
+        "space": "RAS, mm",
+        "voxels": list(image.values.shape),
+        "spacing": image.spacing.tolist(),
+        "origin": image.origin.tolist(),
+        "axes": [_direction(axis) for axis in image.axes.T],
+        "hand": "right" if np.linalg.det(image.axes) > 0 else "left",
+        "type": str(image.values.dtype),
+        "values": {"from": low, "to": high},
+    }
 
 
 def _carried(mesh: PolygonMesh) -> list[str]:

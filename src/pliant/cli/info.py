@@ -12,24 +12,28 @@ from pliant.cli.session import Session
 
 
 def info(
-    file: Annotated[Path, typer.Argument(metavar="FILE", show_default=False, help="A mesh or a transform file.")],
+    file: Annotated[Path, typer.Argument(metavar="FILE", show_default=False, help="A mesh, transform or image file.")],
     variant: opt.VariantOption = None,
     edge: opt.EdgeOption = opt.Edge.clamp,
     json: opt.JsonOption = False,
     quiet: opt.QuietOption = False,
 ) -> None:
-    """Tell what a mesh or transform file holds."""
+    """Tell what a mesh, transform or image file holds."""
     with Session(json=json, quiet=quiet) as session:
         from pliant.cli import facts
         from pliant.io.files import read_bytes
+        from pliant.io.images import is_image, read_image
         from pliant.io.meshes import read
         from pliant.io.transforms import read_transform, transform_format
 
         found: dict[str, Any]
-        if known := transform_format(file, read_bytes(file)):
+        data = read_bytes(file)
+        if known := transform_format(file, data):
             deformer = read_transform(file, variant=None if variant is None else variant.value, edge=edge.value)
-            found = facts.of_transform(deformer)
-            found = {"file": str(file), "format": known.name, **found}
+            conventions = {name: value for name, value in vars(known.conventions).items() if name != "holds"}
+            found = {"file": str(file), "format": known.name, **conventions, **facts.of_transform(deformer)}
+        elif is_image(data):
+            found = {"file": str(file), **facts.of_image(read_image(file))}
         else:
             found = {"file": str(file), **facts.of_mesh(read(file))}
         session.result(**found)
