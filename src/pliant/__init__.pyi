@@ -63,3 +63,5 @@ from .surface.contour_skeletons import ContourSkeleton as ContourSkeleton
 from .surface.contour_skeletons import contour_skeleton as contour_skeleton
 from .surface.laplacian_edit import LaplacianEdit as LaplacianEdit
 from .surface.skeleton_edit import SkeletonEdit as SkeletonEdit
+from .surface.smoothing import smooth as smooth
+from .surface.transfer import DeformationTransfer as DeformationTransfer

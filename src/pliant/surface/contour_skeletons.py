@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import csr_array
 
-from pliant.errors import InvalidMesh, InvalidParameter
+from pliant.errors import InvalidParameter
 from pliant.mesh import Points, PolygonMesh
 from pliant.numerics.eigenpairs import lowest_eigenpairs
 from pliant.numerics.graphs import components, edge_graph, nearest_source
