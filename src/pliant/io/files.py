@@ -21,8 +21,9 @@ def read_bytes(path: Path | str) -> bytes:
     """
     try:
         data = Path(path).read_bytes()
-    except OSError as error:
-        raise UnreadableFile(path, error.strerror or str(error), "check the path and its permissions") from error
+    except (OSError, ValueError) as error:  # ValueError: a name with a zero byte
+        cause = getattr(error, "strerror", None) or str(error)
+        raise UnreadableFile(path, cause, "check the path and its permissions") from error
     if not data:
         raise UnreadableFile(path, "the file is empty", "write or copy it again")
     return data

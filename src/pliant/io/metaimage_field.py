@@ -12,6 +12,7 @@ from pliant.io.displacement_images import grid_of, image_of_grid
 from pliant.io.file_facts import FileFacts
 from pliant.io.report import LossReport, refuse_losses
 from pliant.io.transform_options import ReadOptions
+from pliant.io.words import require_usable
 
 NAME = "MetaImage displacement field"
 
@@ -20,7 +21,7 @@ def read(path: Path, data: bytes, options: ReadOptions) -> SpaceDeformer:
     """The map of a file."""
     image = metaimage.read(path, data)
     if image.values.ndim == 4 and image.values.shape[3] == 3:
-        image = replace(image, values=image.values * SIGNS)
+        image = replace(image, values=require_usable(path, image.values, "displacements") * SIGNS)
     return grid_of(image, path, options, FileFacts(NAME))
 
 

@@ -83,7 +83,7 @@ def read_nifti(path: Path, data: bytes) -> Nifti:
         raise UnreadableFile(path, f"the NIfTI header is damaged: {error}", "export the file again") from error
     if kind.kind not in "fiu":
         raise UnsupportedFormat(f"{path}: its voxels are of type {kind}; real numbers are needed")
-    if not shape or min(shape) < 1 or begin < _HEADER or prod(shape) * kind.itemsize > _LARGEST:
+    if not shape or min(shape) < 1 or not _HEADER <= begin < _LARGEST or prod(shape) * kind.itemsize > _LARGEST:
         raise UnreadableFile(path, f"the header says {shape} voxels from byte {begin} on", "the file is damaged")
     needed = begin + prod(shape) * kind.itemsize
     whole = inflated(path, data, needed)

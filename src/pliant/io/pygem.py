@@ -27,7 +27,7 @@ Floats = NDArray[np.float64]
 
 NAME = "PyGeM parameters"
 _BOX, _WEIGHTS = "Box info", "Parameters weights"
-_MOST = 10_000_000  # control points: more than Bernstein polynomials can bear
+_MOST = 1_000_000  # control points: more than Bernstein polynomials can bear
 
 
 def read(path: Path, data: bytes, options: ReadOptions) -> SpaceDeformer:

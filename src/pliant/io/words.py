@@ -55,7 +55,8 @@ def require_usable(path: Path, values: Floats, what: str) -> Floats:
     UnreadableFile
         Otherwise, with the count and the first.
     """
-    wide = np.asarray(values, np.float64)
+    with np.errstate(invalid="ignore"):  # not-a-numbers that signal
+        wide = np.asarray(values, np.float64)
     bad = np.flatnonzero(~(np.abs(wide.reshape(-1)) <= _LARGEST))
     if len(bad):
         raise UnreadableFile(
