@@ -63,8 +63,8 @@ def _chain(path: Path, data: bytes, later: tuple[str, ...]) -> SpaceDeformer:
     if before == _NONE:
         return own
     name = PureWindowsPath(before).name
-    if name in (*later, path.name) or len(later) > _LONGEST_CHAIN:
-        raise UnreadableFile(path, f"the transform before it is {name!r}, which comes after it", "break the circle")
+    if not name or name in (*later, path.name) or len(later) > _LONGEST_CHAIN:
+        raise UnreadableFile(path, f"the transform before it is {before!r}, which is none", "break the circle")
     earlier = _chain(path.with_name(name), read_bytes(path.with_name(name)), (*later, path.name))
     how = parameters.text("HowToCombineTransforms", "Compose")
     if how not in ("Compose", "Add"):

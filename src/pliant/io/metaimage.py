@@ -121,7 +121,7 @@ def _voxels(path: Path, header: Mapping[str, str], rest: bytes, size: int) -> by
     if name.upper() != "LOCAL":
         if "%" in name or name.upper().startswith("LIST"):
             raise UnsupportedFormat(f"{path}: its voxels stand in many files; save it as .mha")
-        if Path(name).name != name:
+        if not name or Path(name).name != name:
             raise UnreadableFile(path, f"its voxels are in {name!r}, not beside it", "put both into one folder")
         rest = read_bytes(path.with_name(name))
     if header.get("CompressedData", "False").lower() == "true":
