@@ -77,7 +77,7 @@ class NaturalNeighbors:
                     flat, start, stop, cells.sites.reshape(-1), cells.starts, cells.facets, cells.owners,
                     cells.others, cells.normals.reshape(-1), cells.offsets, cells.corner_starts,
                     cells.corners.reshape(-1),
-                    *self._seeds, kind, self.on_site, ends, columns, values, slopes,
+                    *self._seeds, kind, self.on_site, self._rounding, ends, columns, values, slopes,
                 )  # fmt: skip
                 if done == stop - start:
                     break
@@ -93,6 +93,11 @@ class NaturalNeighbors:
         values = np.concatenate([np.empty(0), *(piece[2] for piece in pieces)])
         slopes = np.concatenate([np.empty(0), *(piece[3] for piece in pieces)])
         return Coordinates(starts, columns, values, slopes.reshape(-1, 3))
+
+    @cached_property
+    def _rounding(self) -> float:
+        """How well corners are known: those of the largest cells are cut from polygons as large as the cube."""
+        return 1e-15 * float(np.abs(self.cells.corners).max())
 
     @cached_property
     def _seeds(self) -> tuple[Floats, Integers, NDArray[np.int32]]:

@@ -20,7 +20,7 @@ SIBSON, LAPLACE = 0, 1
 @kernel
 def coordinates(
     points, first, stop, sites, cell_starts, cell_facets, owners, others, normals, offsets, corner_starts, corners,
-    seed_frame, seed_counts, seeds, kind, on_site, row_ends, columns, values, slopes,
+    seed_frame, seed_counts, seeds, kind, on_site, rounding, row_ends, columns, values, slopes,
 ):  # fmt: skip
     """Coordinates of the points ``first:stop`` with respect to the sites.
 
@@ -36,6 +36,8 @@ def coordinates(
         SIBSON or LAPLACE.
     on_site
         Distance within which a point is the site.
+    rounding
+        Distance within which a corner lies on the cut: facets meet to rounding only, and must agree about it.
     row_ends, columns, values
         (stop - first,) where each point's row ends; the sites and their coordinates.
     slopes
@@ -78,7 +80,7 @@ def coordinates(
                     asked[facet] = row - first
                     size = _share(
                         facet, px, py, pz, sites, owners, others, normals, offsets, corner_starts, corners,
-                        outlines, signed, ends, size, found, slots, sums,
+                        rounding, outlines, signed, ends, size, found, slots, sums,
                     )  # fmt: skip
             at += 1
         if filled + size > len(columns):
@@ -121,12 +123,12 @@ def _walk(px, py, pz, start, sites, cell_starts, cell_facets, owners, others, no
 @inlined
 def _share(
     facet, px, py, pz, sites, owners, others, normals, offsets, corner_starts, corners,
-    outlines, signed, ends, size, found, slots, sums,
+    rounding, outlines, signed, ends, size, found, slots, sums,
 ):  # fmt: skip
     """Add what a facet gives to the cells on both sides, which join ``found``; how many those are then."""
     own, other = get(owners, facet), get(others, facet)
     dx, dy, dz = px - get(sites, 3 * own), py - get(sites, 3 * own + 1), pz - get(sites, 3 * own + 2)
-    area, crossings = _kept(facet, dx, dy, dz, corner_starts, corners, normals, signed, ends)
+    area, crossings = _kept(facet, dx, dy, dz, corner_starts, corners, normals, rounding, signed, ends)
     if area < 0.0:
         return size
     for site in (own, other):
@@ -148,19 +150,20 @@ def _share(
 
 
 @inlined
-def _kept(facet, dx, dy, dz, corner_starts, corners, normals, signed, ends):
+def _kept(facet, dx, dy, dz, corner_starts, corners, normals, rounding, signed, ends):
     """The area of a facet nearer to a point than to the site, and how often its outline crosses; -1 if none is.
 
     ``ends`` receives where the outline leaves (3,) what is nearer to the point, and where it comes back (3,).
     """
     base, size = corner_starts[facet], corner_starts[facet + 1] - corner_starts[facet]
     shift = 0.5 * (dx * dx + dy * dy + dz * dz)
+    least = rounding * np.sqrt(2.0 * shift)
     touched = False
     for k in range(size):
         n = 3 * (base + k)
         s = get(corners, n) * dx + get(corners, n + 1) * dy + get(corners, n + 2) * dz - shift
-        put(signed, k, s)
-        touched |= s > 0.0
+        put(signed, k, s if abs(s) > least else 0.0)
+        touched |= s > least
     if not touched:
         return -1.0, 0
     crossings, empty = 0, True
