@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import base64
 import struct
 
 import numpy as np
@@ -135,6 +136,28 @@ def off_binary() -> bytes:
     return b"NOFF BINARY\n" + struct.pack(">3i", 4, 2, 0) + vertices.tobytes() + faces
 
 
+def gltf(*, binary: bool) -> bytes:
+    """A glTF of a placed quadrilateral with a material; its buffer is inside."""
+    chunk = np.array([0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0], "<f4").tobytes()
+    chunk += np.array([0, 1, 2, 0, 2, 3], "<u2").tobytes()
+    uri = "" if binary else f', "uri": "data:;base64,{base64.b64encode(chunk).decode()}"'
+    text = (
+        '{"asset": {"version": "2.0"}, "scenes": [{"nodes": [0]}], '
+        '"nodes": [{"children": [1], "scale": [1, 2, 3]}, {"mesh": 0, "rotation": [0, 0, 0.6, 0.8]}], '
+        '"meshes": [{"primitives": [{"attributes": {"POSITION": 0, "NORMAL": 0}, "indices": 1, "material": 0}]}], '
+        '"materials": [{"name": "red", "pbrMetallicRoughness": {"baseColorFactor": [1, 0, 0, 1]}}], '
+        '"accessors": [{"bufferView": 0, "componentType": 5126, "count": 4, "type": "VEC3"}, '
+        '{"bufferView": 1, "componentType": 5123, "count": 6, "type": "SCALAR"}], '
+        '"bufferViews": [{"buffer": 0, "byteLength": 48}, {"buffer": 0, "byteOffset": 48, "byteLength": 12}], '
+        f'"buffers": [{{"byteLength": 60{uri}}}]}}'
+    ).encode()
+    if not binary:
+        return text
+    text += b" " * (-len(text) % 4)
+    body = struct.pack("<II", len(text), 0x4E4F534A) + text + struct.pack("<II", len(chunk), 0x004E4942) + chunk
+    return b"glTF" + struct.pack("<II", 2, 12 + len(body)) + body
+
+
 SEEDS = {
     "obj": OBJ,
     "obj-colors": OBJ_COLORS,
@@ -146,6 +169,8 @@ SEEDS = {
     "stl-binary": stl_binary(),
     "csv": b"id,x,y,z,nx,ny,nz,heat\n1,0,0,0,0,0,1,2.5\n2,1,0,0,0,0,1,3\n3,0,1,0,0,0,1,4\n",
     "xyz": b"# a cloud\n0 0 0 255 0 0\n1 0 0 0 255 0\n0 1e-3 0 0 0 255\n",
+    "glb": gltf(binary=True),
+    "gltf": gltf(binary=False),
     "ply-text": PLY_TEXT,
     "ply-little": ply_binary("<"),
     "ply-big": ply_binary(">"),

@@ -20,12 +20,14 @@ from pliant.mesh import PolygonMesh
 class Source:
     """The bytes of a file, and the name by which the user knows them.
 
-    ``folder`` is where files that it refers to are looked for; None where there is no such place.
+    ``folder`` is where files that it refers to are looked for; None where there is no such place. ``freeze`` allows
+    for a shape at rest where a skin or morph targets would move it.
     """
 
     data: bytes
     name: Path | str
     folder: Path | None = None
+    freeze: bool = False
 
     def unreadable(self, cause: str, cure: str = "", *, at: int | None = None, text: bool = True) -> UnreadableFile:
         """The error that says what is wrong at a byte offset: by its line where the file is text."""

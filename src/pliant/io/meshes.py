@@ -25,6 +25,7 @@ from pliant.mesh import PolygonMesh
 
 _FORMATS = {  # module and class by ending; files are recognised in this order
     "pliant.io.ply:Ply": (".ply",),
+    "pliant.io.gltf:Gltf": (".glb", ".gltf"),
     "pliant.io.polydata:PolyData": (".vtp", ".vtk"),
     "pliant.io.unstructured:Unstructured": (".vtu", ".vtk"),
     "pliant.io.vtk_grid:VtkGrid": (".vti", ".vtr", ".vts"),
@@ -38,7 +39,7 @@ _FORMATS = {  # module and class by ending; files are recognised in this order
 _ROOM, _GROWTH = 1 << 26, 100  # bytes that any compressed file may inflate to, and how often its own size
 
 
-def read(file: Path | str | BinaryIO, *, name: str | None = None) -> PolygonMesh:
+def read(file: Path | str | BinaryIO, *, name: str | None = None, freeze: bool = False) -> PolygonMesh:
     """Read a mesh; its format is recognised by what the file holds, and by its ending only where that says nothing.
 
     Parameters
@@ -48,6 +49,8 @@ def read(file: Path | str | BinaryIO, *, name: str | None = None) -> PolygonMesh
         to are not looked for.
     name
         What errors call a stream, and what its ending is taken from; its own name if it has one.
+    freeze
+        Read a shape at rest, which a skin or morph targets would move, instead of refusing it.
 
     Raises
     ------
@@ -58,17 +61,17 @@ def read(file: Path | str | BinaryIO, *, name: str | None = None) -> PolygonMesh
     """
     if isinstance(file, (str, Path)):
         path = Path(file)
-        return read_mesh_bytes(read_bytes(path), name or path, folder=path.parent)
+        return read_mesh_bytes(read_bytes(path), name or path, folder=path.parent, freeze=freeze)
     data = file.read()
     known = name or _stream_name(file)
     if not isinstance(data, bytes):
         raise UnreadableFile(known, "the stream gives text", "open it as binary: open(path, 'rb')")
     if not data:
         raise UnreadableFile(known, "the stream is empty", "rewind it: stream.seek(0)")
-    return read_mesh_bytes(data, known)
+    return read_mesh_bytes(data, known, freeze=freeze)
 
 
-def read_mesh_bytes(data: bytes, name: Path | str, *, folder: Path | None = None) -> PolygonMesh:
+def read_mesh_bytes(data: bytes, name: Path | str, *, folder: Path | None = None, freeze: bool = False) -> PolygonMesh:
     """A mesh from the bytes of a file.
 
     Parameters
@@ -79,13 +82,15 @@ def read_mesh_bytes(data: bytes, name: Path | str, *, folder: Path | None = None
         What errors call it; its ending counts where the bytes do not say what they are.
     folder
         Where files that it refers to are looked for; None: nowhere.
+    freeze
+        As :func:`read`.
 
     Raises
     ------
     UnreadableFile, UnsupportedFormat
         As :func:`read`.
     """
-    source = Source(_inflated(data, name), _plain(name), folder)
+    source = Source(_inflated(data, name), _plain(name), folder, freeze)
     try:
         mesh = _recognised(source).read(source)
     except InvalidMesh as error:

@@ -39,6 +39,10 @@ def read(source: Source, prefix: bytes, begin: int) -> tuple[PolygonMesh, Layout
     elements = (Element("vertex", vertices, properties), Element("face", faces, _LISTS))
     columns = decode(source, Header(">", elements, at + 12))
     vertex, face = columns["vertex"], columns["face"]
+    for name, column in vertex.items():
+        if len(bad := np.flatnonzero(~np.isfinite(column.values))):
+            cause = f"vertex {bad[0]} has {name} = {column.values[bad[0]]}"
+            raise source.unreadable(cause, "remove or correct it", at=int(column.at[bad[0]]), text=False)
     polygons = _polygons(source, face["corners"], vertices)
     attributes: dict[str, Any] = {}
     if b"N" in prefix:
