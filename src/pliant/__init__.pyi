@@ -20,6 +20,10 @@ from .io.landmarks import read_landmarks as read_landmarks
 from .io.landmarks import write_landmarks as write_landmarks
 from .io.meshes import read as read
 from .io.meshes import write as write
+from .io.models import read_model as read_model
+from .io.models import write_model as write_model
+from .io.pairs import read_pairs as read_pairs
+from .io.pairs import write_pairs as write_pairs
 from .io.report import LossReport as LossReport
 from .io.transforms import read_transform as read_transform
 from .io.transforms import write_transform as write_transform

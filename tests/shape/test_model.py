@@ -70,8 +70,7 @@ def test_nystrom_is_exact_at_all_points_and_its_eigenvalues_do_not_grow(box_mesh
     model = ShapeModel.from_kernel(cloud, KERNEL, tolerance=1e-12, method="nystrom", spread="random", samples=10**6)
     np.testing.assert_allclose(spread_of(model), dense(KERNEL, points), atol=1e-9)
     few, many = (
-        ShapeModel.from_kernel(box_mesh, KERNEL, rank=10, method="nystrom", samples=n).variances[:5]
-        for n in (300, 900)
+        ShapeModel.from_kernel(box_mesh, KERNEL, rank=10, method="nystrom", samples=n).variances[:5] for n in (300, 900)
     )
     np.testing.assert_allclose(few, many, rtol=0.04)
     assert many[0] < KERNEL.diagonal(points).max()

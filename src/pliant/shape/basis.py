@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
 from pliant.numerics.chunks import for_chunks
-from pliant.numerics.threads import one_blas_thread
+from pliant.numerics.one_thread import one_blas_thread
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.integer]

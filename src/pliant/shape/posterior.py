@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from pliant.errors import InvalidParameter, PliantWarning
-from pliant.numerics.threads import one_blas_thread
+from pliant.numerics.one_thread import one_blas_thread
 from pliant.shape.basis import Basis
 from pliant.shape.kernels import Floats
 
@@ -58,7 +58,7 @@ class Noise:
         usable = np.isfinite(matrices).all() and np.allclose(matrices, matrices.transpose(0, 2, 1))
         if not usable or (np.linalg.eigvalsh(matrices) <= 0).any():
             raise InvalidParameter("covariance matrices of noise must be symmetric and positive definite")
-        return cls(np.linalg.inv(matrices), float(np.linalg.slogdet(matrices)[1].sum()))
+        return cls(np.asarray(np.linalg.inv(matrices), np.float64), float(np.linalg.slogdet(matrices)[1].sum()))
 
     def weighted(self, values: Floats) -> Floats:
         """(m, 3) the precision times (m, 3) values."""
