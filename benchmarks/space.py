@@ -10,8 +10,15 @@ from threadpoolctl import threadpool_limits
 
 from measure import Comparison, report
 from pliant.numerics.bases import bernstein
+from pliant.space.bend import Bend
 from pliant.space.bezier_ffd import BezierFFD
 from pliant.space.bspline_ffd import BSplineFFD
+from pliant.space.sine import Sine
+from pliant.space.squash import Squash
+from pliant.space.taper import Taper
+from pliant.space.thin_plate_spline import ThinPlateSpline
+from pliant.space.twist import Twist
+from pliant.space.wave import Wave
 
 RANDOM = np.random.default_rng(0)
 POINTS = RANDOM.random((1_000_000, 3))
@@ -79,6 +86,104 @@ def bezier_comparisons() -> list[Comparison]:
             )
         )
     return results
+
+
+def barr_comparisons() -> list[Comparison]:
+    """A twist of a million points, with Jacobians too; what its siblings cost beside it."""
+    twist = Twist.around(POINTS, axis="z", angle=1.5)
+    (low, high), origin = twist.bounds, np.asarray(twist.origin)
+
+    def numpy_twist(points=POINTS):
+        theta = 1.5 * np.clip((points[:, 2] - low) / (high - low), 0, 1)
+        cosine, sine = np.cos(theta), np.sin(theta)
+        x, y = points[:, 0] - origin[0], points[:, 1] - origin[1]
+        turned = (cosine * x - sine * y + origin[0], sine * x + cosine * y + origin[1], points[:, 2])
+        return np.stack(turned, axis=1)
+
+    def numexpr_twist():
+        import numexpr
+
+        out, theta = np.empty_like(POINTS), "(a * where(z < l, 0, where(z > h, 1, (z - l) / (h - l))))"
+        names = {"x": POINTS[:, 0], "y": POINTS[:, 1], "z": POINTS[:, 2], "l": low, "h": high, "a": 1.5}
+        names |= {"p": origin[0], "q": origin[1]}
+        numexpr.evaluate(f"cos({theta}) * (x - p) - sin({theta}) * (y - q) + p", names, out=out[:, 0])
+        numexpr.evaluate(f"sin({theta}) * (x - p) + cos({theta}) * (y - q) + q", names, out=out[:, 1])
+        out[:, 2] = POINTS[:, 2]
+        return out
+
+    def differences():
+        step = 1e-6
+        ahead = [numpy_twist(POINTS + step * e) - numpy_twist(POINTS - step * e) for e in np.eye(3)]
+        return np.stack(ahead, axis=2) / (2 * step)
+
+    for peer in (numpy_twist, numexpr_twist):
+        assert np.abs(peer() - twist(POINTS)).max() < 1e-13
+    siblings = {
+        "Taper": Taper.around(POINTS, factor=0.5),
+        "Bend": Bend.around(POINTS, angle=0.5),
+        "Sine": Sine.around(POINTS, amplitude=0.1),
+        "Wave": Wave.around(POINTS, amplitude=0.1),
+        "Squash": Squash.around(POINTS, factor=0.7),
+    }
+    return [
+        Comparison(
+            "twist, 1M points",
+            {
+                "pliant": lambda: twist(POINTS),
+                "numexpr": numexpr_twist,
+                "NumPy": numpy_twist,
+                "a copy of the points": POINTS.copy,
+            },
+            rounds=11,
+        ),
+        Comparison(
+            "the same, with Jacobians",
+            {
+                "pliant": lambda: (twist(POINTS), twist.jacobian(POINTS)),
+                "NumPy and central differences": lambda: (numpy_twist(), differences()),
+            },
+            rounds=5,
+        ),
+        Comparison(
+            "its siblings, 1M points",
+            {"Twist": lambda: twist(POINTS)} | {name: lambda d=d: d(POINTS) for name, d in siblings.items()},
+        ),
+    ]
+
+
+def landmark_comparisons() -> list[Comparison]:
+    """A thin-plate spline through 200 landmarks at 100,000 points: the system solved, and the points warped."""
+    import warnings
+
+    import morphops
+    from scipy.interpolate import RBFInterpolator
+
+    points, landmarks = POINTS[:100_000], RANDOM.random((200, 3))
+    targets = landmarks + 0.05 * RANDOM.normal(size=landmarks.shape)
+    bound = ThinPlateSpline(landmarks, targets).bind(points)
+
+    def scipy_spline():
+        return points + RBFInterpolator(landmarks, targets - landmarks, kernel="linear", degree=1)(points)
+
+    def morphops_spline():
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", DeprecationWarning)
+            return morphops.tps_warp(landmarks, targets, points)
+
+    for peer in (scipy_spline, morphops_spline):
+        assert np.abs(peer() - bound.deform()).max() < 1e-11
+    return [
+        Comparison(
+            "thin-plate spline, 200 landmarks, 100k points",
+            {
+                "pliant": lambda: ThinPlateSpline(landmarks, targets)(points),
+                "pliant, bound": bound.deform,
+                "morphops": morphops_spline,
+                "SciPy RBFInterpolator": scipy_spline,
+            },
+            rounds=5,
+        )
+    ]
 
 
 def vtk_bspline(displacements, lattice):
@@ -217,12 +322,12 @@ def compile_note() -> str:
 
 
 if __name__ == "__main__":
-    comparisons = bspline_comparisons() + bezier_comparisons()
+    comparisons = bspline_comparisons() + bezier_comparisons() + barr_comparisons() + landmark_comparisons()
     print(
         report(
             "Space deformers",
             comparisons,
-            ["pliant", "numpy", "numba", "vtk", "scipy", "splinepy"],
+            ["pliant", "numpy", "numba", "vtk", "scipy", "splinepy", "numexpr", "morphops"],
             [compile_note(), memory_note()],
         )
     )

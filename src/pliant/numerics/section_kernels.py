@@ -20,7 +20,19 @@ from __future__ import annotations
 import numpy as np
 
 from pliant.numerics.compiling import inlined, kernel
-from pliant.numerics.lanes import clamp, get, load, load_triples, put, root, spread, store, store_triples, where_between
+from pliant.numerics.lanes import (
+    clamp,
+    get,
+    load,
+    load_triples,
+    put,
+    root,
+    spread,
+    store,
+    store_triples,
+    total,
+    where_between,
+)
 from pliant.numerics.sincos import sincos
 
 
@@ -62,7 +74,8 @@ def _component(table, rows, i, at, u, v):
 
 @kernel
 def displace(points, first, stop, frame, table, rows, base, out):
-    """out (3 n,) = base + the displacement, turned into the world."""
+    """out (3 n,) = base + the displacement, turned into the world; gives zero if all of it is finite, else NaN."""
+    doubt = spread(0.0)
     for block in range(first, stop, 8):
         at = min(block, stop - 8)
         x, y, z = load_triples(points, 3 * at)
@@ -77,6 +90,8 @@ def displace(points, first, stop, frame, table, rows, base, out):
             z + _turned(frame, 2, du, dv, ds),
         )
         store_triples(out, 3 * at, x, y, z)
+        doubt = doubt + (x * 0.0 + y * 0.0 + z * 0.0)
+    return total(doubt)
 
 
 @inlined
@@ -136,7 +151,11 @@ def _profile(s, ramp, pieces):
 
 @kernel
 def similar(points, first, stop, frame, ramp, pieces, angle, growth, out):
-    """out (3 n,) = sections turned by angle h and scaled by 1 + growth h, for a profile h(t)."""
+    """out (3 n,) = sections turned by angle h and scaled by 1 + growth h, for a profile h(t).
+
+    Gives zero if all of it is finite, else NaN.
+    """
+    doubt = spread(0.0)
     for block in range(first, stop, 8):
         at = min(block, stop - 8)
         x, y, z = load_triples(points, 3 * at)
@@ -154,6 +173,8 @@ def similar(points, first, stop, frame, ramp, pieces, angle, growth, out):
             z + _turned(frame, 2, du, dv, ds),
         )
         store_triples(out, 3 * at, x, y, z)
+        doubt = doubt + (x * 0.0 + y * 0.0 + z * 0.0)
+    return total(doubt)
 
 
 @kernel

@@ -41,24 +41,26 @@ def section_of(points: Floats, frame: Floats, radial: bool = False) -> Floats:
 
 def displaced(
     points: Floats, frame: Floats, entries: Callable[[Floats], Entries], base: Floats, out: Floats, radial: bool = False
-) -> None:
-    """Out (n, 3) = base (n, 3) + the displacement of (n, 3) points; all in C order."""
+) -> bool:
+    """Out (n, 3) = base (n, 3) + the displacement of (n, 3) points; all in C order. Tells whether all is finite."""
     from pliant.numerics import section_kernels
 
     if len(points) < _LANES:
         few = np.empty((_LANES, 3))
-        displaced(_filled(points), frame, entries, _filled(base), few, radial) if len(points) else None
+        finite = not len(points) or displaced(_filled(points), frame, entries, _filled(base), few, radial)
         out[:] = few[: len(points)]
-        return
+        return finite
     flat, under, target = points.reshape(-1), base.reshape(-1), out.reshape(-1)
+    doubts: list[float] = []
 
     def work(first: int, stop: int) -> None:
         q = np.empty(stop - first)
         section_kernels.measure(flat, first, stop, frame, radial, q)
         table, rows = _tabulated(entries(q), stop - first)
-        section_kernels.displace(flat, first, stop, frame, table, rows, under, target)
+        doubts.append(section_kernels.displace(flat, first, stop, frame, table, rows, under, target))
 
     for_spans(work, len(points))
+    return sum(doubts) == 0.0
 
 
 def jacobians(
@@ -86,20 +88,26 @@ def jacobians(
     return out[:count]
 
 
-def similar(points: Floats, frame: Floats, profile: Profile, angle: float, growth: float, out: Floats) -> None:
-    """Out (n, 3) = points whose sections turn by angle h(t) and grow by 1 + growth h(t); faster than a table."""
+def similar(points: Floats, frame: Floats, profile: Profile, angle: float, growth: float, out: Floats) -> bool:
+    """Out (n, 3) = points whose sections turn by angle h(t) and grow by 1 + growth h(t); faster than a table.
+
+    Tells whether all is finite.
+    """
     from pliant.numerics import section_kernels
 
     if len(points) < _LANES:
         few = np.empty((_LANES, 3))
-        similar(_filled(points), frame, profile, angle, growth, few) if len(points) else None
+        finite = not len(points) or similar(_filled(points), frame, profile, angle, growth, few)
         out[:] = few[: len(points)]
-        return
+        return finite
     flat, target = points.reshape(-1), out.reshape(-1)
-    for_chunks(
-        lambda first, stop: section_kernels.similar(flat, first, stop, frame, *profile, angle, growth, target),
-        len(points),
-    )
+    doubts: list[float] = []
+
+    def work(first: int, stop: int) -> None:
+        doubts.append(section_kernels.similar(flat, first, stop, frame, *profile, angle, growth, target))
+
+    for_chunks(work, len(points))
+    return sum(doubts) == 0.0
 
 
 def similar_jacobians(points: Floats, frame: Floats, profile: Profile, angle: float, growth: float) -> Floats:

@@ -180,11 +180,15 @@ class AxialDeformer(SpaceDeformer):
     def _deformed(self, target: Target) -> Points:
         points = as_points(target, borrow=True)
         out = np.empty_like(points)
-        self._move(points, out)
-        return require_finite(out, type(self).__name__)
+        return self._moved_into(points, out)
 
-    def _move(self, points: Points, out: Points) -> None:
-        displaced(points, self._frame, self._entries, points, out, self.radial)
+    def _moved_into(self, points: Points, out: Points) -> Points:
+        """The deformed points, written to out, all finite."""
+        return out if self._move(points, out) else require_finite(out, type(self).__name__)
+
+    def _move(self, points: Points, out: Points) -> bool:
+        """Write the deformed points to out, and tell whether all are finite."""
+        return displaced(points, self._frame, self._entries, points, out, self.radial)
 
     def _change(self, points: Points, numbers: Controls, change: Controls) -> Points:
         """(n, 3) how the points move when the numbers change: a complex step, exact to rounding."""
@@ -200,8 +204,8 @@ class AxialDeformer(SpaceDeformer):
         """The images of points under other entries in the same frame."""
         images = as_points(points, borrow=True)
         out = np.empty_like(images)
-        displaced(images, self._frame, entries, images, out, self.radial)
-        return require_finite(out, f"inverse of {type(self).__name__}")
+        finite = displaced(images, self._frame, entries, images, out, self.radial)
+        return out if finite else require_finite(out, f"inverse of {type(self).__name__}")
 
     def _sections(self, points: Points) -> Floats:
         return section_of(points, self._frame, self.radial)
@@ -230,9 +234,7 @@ class AxialBinding(Binding):
 
     def deform(self, controls: ArrayLike | None = None, out: Points | None = None) -> Points:
         """(n, 3) the deformed points."""
-        result = checked_out(out, len(self._points))
-        self._at(controls)._move(self._points, result)
-        return require_finite(result, type(self._deformer).__name__)
+        return self._at(controls)._moved_into(self._points, checked_out(out, len(self._points)))
 
     def jvp(self, controls: ArrayLike | None, d_controls: ArrayLike) -> Points:
         """(n, 3) how the points move when the parameters change."""

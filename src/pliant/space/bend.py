@@ -124,16 +124,17 @@ class Bend(AxialDeformer):
             )
         return result
 
-    def _move(self, points: Points, out: Points) -> None:
-        super()._move(points, out)
+    def _move(self, points: Points, out: Points) -> bool:
+        finite = super()._move(points, out)
         count = int(self._folded(points).sum()) if self.angle else 0
         if count:
             warnings.warn(
                 f"the bend folds at {count} of {len(points):,} points: they lie beyond its centre of curvature, "
                 f"{abs(self._width / self.angle):.4g} from the origin's plane; bend less, or over a longer piece",
                 PliantWarning,
-                stacklevel=4,
+                stacklevel=5,
             )
+        return finite
 
     def _quietly(self, points: Points) -> Points:
         out = np.empty_like(points)

@@ -51,12 +51,11 @@ class SimilarDeformer(AxialDeformer):
         along, across = grows * cosine - r * sine * turns, grows * sine + r * cosine * turns
         return {(0, 1): along, (0, 2): -across, (1, 1): across, (1, 2): along}
 
-    def _move(self, points: Points, out: Points) -> None:
+    def _move(self, points: Points, out: Points) -> bool:
         rule = self._rule
         if rule is None:
-            super()._move(points, out)
-        else:
-            similar(points, self._frame, self._ramp(rule[0]), *rule[1:], out)
+            return super()._move(points, out)
+        return similar(points, self._frame, self._ramp(rule[0]), *rule[1:], out)
 
     def jacobian(self, points: ArrayLike) -> Floats:
         rule = self._rule
