@@ -186,3 +186,52 @@ def test_truncated_and_lying_files(tmp_path):
     path.write_bytes(text[:-8])
     with pytest.raises(UnreadableFile, match=r"2,872 bytes"):
         pl.read_transform(path)
+
+
+def by_vtk(path, points):
+    """VTK's own grid transform."""
+    vtk = pytest.importorskip("vtk")
+    reader = vtk.vtkXMLImageDataReader() if path.suffix == ".vti" else vtk.vtkStructuredPointsReader()
+    reader.SetFileName(str(path))
+    reader.Update()
+    image = reader.GetOutput()
+    image.GetPointData().SetScalars(image.GetPointData().GetArray(0))
+    transform = vtk.vtkGridTransform()
+    transform.SetDisplacementGridData(image)
+    return np.array([transform.TransformPoint(point) for point in points.tolist()])
+
+
+def test_vtk_evaluates_our_fields(tmp_path):
+    values = np.random.default_rng(0).normal(size=(6, 5, 4, 3))
+    ours = DisplacementGrid(displacements=values, origin=(1, 2, 3), spacing=(1.5, 2, 3), outside="clamp")
+    path, points = tmp_path / "a.vti", points_of(ours, 2)
+    assert not pl.write_transform(ours, path, strict=True).losses
+    assert np.abs(by_vtk(path, points) - ours(points)).max() < 1e-4  # VTK's place in a cell is of single precision
+    assert np.abs(pl.read_transform(path)(points) - ours(points)).max() < 1e-12
+
+
+def test_turned_and_flat_images_of_vtk(tmp_path):
+    for shape in ((6, 5, 4), (6, 1, 4), (1, 5, 4)):
+        values = np.random.default_rng(0).normal(size=(*shape, 3))
+        ours = DisplacementGrid(displacements=values, origin=(1, 2, 3), spacing=(1.5, 2, 3), axes=AXES, outside="clamp")
+        pl.write_transform(ours, tmp_path / "a.vti")
+        points = points_of(ours)
+        assert np.abs(pl.read_transform(tmp_path / "a.vti")(points) - ours(points)).max() < 1e-12
+
+
+def test_legacy_images_of_vtk_and_damage(tmp_path):
+    path = tmp_path / "a.vtk"
+    values = np.random.default_rng(0).normal(size=(2, 3, 4, 3))
+    head = "# vtk DataFile Version 3.0\nfield\nASCII\nDATASET STRUCTURED_POINTS\nDIMENSIONS 2 3 4\nORIGIN 1 2 3\n"
+    rows = "\n".join(" ".join(map(repr, row)) for row in values.transpose(2, 1, 0, 3).reshape(-1, 3).tolist())
+    path.write_text(f"{head}SPACING 1 2 3\nPOINT_DATA 24\nVECTORS u double\n{rows}\n")
+    read = pl.read_transform(path)
+    assert np.abs(read.displacements - values).max() < 1e-12
+    path.write_text(f"{head}SPACING 1 2 3\nPOINT_DATA 24\nVECTORS u double\n{rows[:200]}\n")
+    with pytest.raises((UnreadableFile, UnsupportedFormat)):
+        pl.read_transform(path)
+    grid_path = tmp_path / "a.vti"
+    assert "border" in pl.write_transform(grid(), grid_path).losses[0]
+    grid_path.write_bytes(grid_path.read_bytes()[:-2000])
+    with pytest.raises(UnreadableFile):
+        pl.read_transform(grid_path)

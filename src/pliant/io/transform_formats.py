@@ -110,6 +110,24 @@ FORMATS = (
         shared=True,
     ),
     TransformFormat(
+        "VTK displacement field",
+        (".vti",),
+        re.compile(
+            rb"(?s)<VTKFile\b[^>]*type=.ImageData.*?<PointData\b[^>]*Vectors=|DATASET STRUCTURED_POINTS.*?\nVECTORS "
+        ),
+        "vtk_field",
+        Conventions(
+            "linear displacement grids",
+            "the file's own",
+            _PUSH,
+            "displacements; x, y, z of a point together; first index fastest",
+            "the border goes on",
+            "float64",
+        ),
+        "grid",
+        shared=True,
+    ),
+    TransformFormat(
         "MIRTK dof",
         (".dof.gz", ".dof"),
         re.compile(rb"\A\x00\x0c\x6f\x9f"),
