@@ -11,9 +11,13 @@ from pliant.cli.convert import convert
 from pliant.cli.deform import deform
 from pliant.cli.deformer_options import DeformingCommand
 from pliant.cli.demo import demo
+from pliant.cli.edit import edit
 from pliant.cli.exits import EXPLAINED
 from pliant.cli.info import info
 from pliant.cli.render import render
+from pliant.cli.skeleton import skeleton
+from pliant.cli.smooth import smooth
+from pliant.cli.transfer import transfer
 from pliant.cli.warp import warp
 
 app = typer.Typer(
@@ -23,7 +27,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,  # bugs are reported by the entry point
     epilog=EXPLAINED,
 )
-for command in (deform, warp, info, check, convert, render, demo):
+for command in (deform, warp, edit, skeleton, smooth, transfer, info, check, convert, render, demo):
     app.command(cls=DeformingCommand if command in (deform, render) else None)(command)
 
 

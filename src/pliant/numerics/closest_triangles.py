@@ -66,7 +66,10 @@ def project(queries: Floats, corners: Floats) -> Floats:
     inside = ~flat & (s >= 0) & (t >= 0) & (s + t <= 1)
     sides = np.stack([_on_side(queries, p, q) for p, q in ((a, b), (b, c), (c, a))])
     nearest = ((sides - queries) ** 2).sum(axis=2).argmin(axis=0)
-    return np.where(inside[:, None], a + s[:, None] * u + t[:, None] * v, sides[nearest, np.arange(len(queries))])
+    found: Floats = np.where(
+        inside[:, None], a + s[:, None] * u + t[:, None] * v, sides[nearest, np.arange(len(queries))]
+    )
+    return found
 
 
 def _on_side(queries: Floats, start: Floats, end: Floats) -> Floats:

@@ -20,6 +20,7 @@ from pliant.numerics.sparse_cholesky import Cholesky
 Floats = NDArray[np.float64]
 
 _BLOCK = 3  # right-hand sides that the factor solves for at once
+_DENSE = 400  # unknowns: up to here a dense solver is as fast
 
 
 def lowest_eigenpairs(stiffness: Any, mass: Floats, count: int, *, tolerance: float = 1e-9) -> tuple[Floats, Floats]:
@@ -52,13 +53,13 @@ def lowest_eigenpairs(stiffness: Any, mass: Floats, count: int, *, tolerance: fl
     root = np.sqrt(mass)
     scaled = csc_array(diags_array(1 / root) @ stiffness @ diags_array(1 / root))
     size = len(mass)
-    if size <= max(60, 4 * count):
+    if size <= max(_DENSE, 4 * count):
         every, dense = np.linalg.eigh(scaled.toarray())
         return _finished(every[:count], dense[:, :count], root)
     shift = 1e-2 * float(scaled.diagonal().mean()) * count / size  # far below the eigenvalues wanted (Weyl's law)
     krylov = _Krylov(Cholesky(scaled + diags_array(np.full(size, shift))), min(size, 40 * count + 200))
     while krylov.extend():
-        if krylov.width < 2 * count or krylov.width % (4 * _BLOCK):
+        if krylov.width < 2 * count or (krylov.width % (4 * _BLOCK) and krylov.width + _BLOCK <= krylov.room):
             continue
         inverse, found = krylov.largest(count, tolerance)
         if found is None:
@@ -74,7 +75,7 @@ class _Krylov:
     """An orthonormal basis Q of a block Krylov space of A^-1, and T = Q^T A^-1 Q."""
 
     def __init__(self, factor: Cholesky, room: int) -> None:
-        self._factor, self.width = factor, 0
+        self._factor, self.width, self.room = factor, 0, room
         self._basis = np.empty((factor.size, room), order="F")
         self._projected = np.zeros((room, room))
         self._next = np.linalg.qr(np.random.default_rng(1).normal(size=(factor.size, _BLOCK)))[0]
@@ -83,7 +84,7 @@ class _Krylov:
     def extend(self) -> bool:
         """Take in one more block; False where there is no room."""
         begin, end = self.width, self.width + _BLOCK
-        if end > self._basis.shape[1]:
+        if end > self.room:
             return False
         self._basis[:, begin:end] = self._next
         self.width = end

@@ -12,7 +12,7 @@ Triangles = NDArray[np.int32]
 _FLAT = 1e-8  # of the longest side: a triangle less high than this has no direction
 
 
-def sound(points: Floats, triangles: Triangles) -> NDArray[np.bool_]:
+def sound(points: Floats, triangles: NDArray[np.integer]) -> NDArray[np.bool_]:
     """(t,) which triangles have an area to speak of."""
     sides = points[triangles[:, [1, 2, 0]]] - points[triangles]
     longest = (sides**2).sum(axis=2).max(axis=1)
@@ -56,13 +56,13 @@ class DeformationGradients:
 
 def plane_gradients(points: Floats, triangles: Triangles) -> csr_array:
     """(3 t, n) the gradient of a piecewise linear function in each triangle's plane; zero where not :func:`sound`."""
-    inverse = np.linalg.inv(frames(points, triangles))
+    inverse = np.asarray(np.linalg.inv(frames(points, triangles)), np.float64)
     return _sparse(inverse[:, :2], triangles, points, len(points))
 
 
 def full_gradients(points: Floats, triangles: Triangles) -> csr_array:
     """(3 t, n + t) gradients by three corners and a fourth vertex of each triangle, at the tip of its normal."""
-    inverse = np.linalg.inv(frames(points, triangles))
+    inverse = np.asarray(np.linalg.inv(frames(points, triangles)), np.float64)
     fourth = len(points) + np.arange(len(triangles))
     return _sparse(inverse, np.column_stack([triangles, fourth]), points, len(points) + len(triangles))
 

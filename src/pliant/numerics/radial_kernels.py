@@ -31,7 +31,7 @@ from pliant.numerics.lanes import (
 
 @inlined
 def _from(centers, k, x, y, z):
-    return x - centers[3 * k], y - centers[3 * k + 1], z - centers[3 * k + 2]
+    return x - get(centers, 3 * k), y - get(centers, 3 * k + 1), z - get(centers, 3 * k + 2)
 
 
 @inlined
@@ -67,7 +67,7 @@ def radial_sum(points, first, stop, centers, scale, support, values, linear, bas
         for k in range(len(centers) // 3):
             dx, dy, dz = _from(centers, k, x, y, z)
             phi = _phi(dx * dx + dy * dy + dz * dz, scale, support)
-            a, b, c = a + phi * values[3 * k], b + phi * values[3 * k + 1], c + phi * values[3 * k + 2]
+            a, b, c = a + phi * get(values, 3 * k), b + phi * get(values, 3 * k + 1), c + phi * get(values, 3 * k + 2)
         u, v, w = load_triples(base, 3 * at)
         store_triples(out, 3 * at, u + a, v + b, w + c)
 
@@ -86,13 +86,13 @@ def radial_slopes(points, first, stop, centers, scale, support, values, linear, 
             slope = _slope_over_radius(dx * dx + dy * dy + dz * dz, scale, support)
             dx, dy, dz = dx * slope, dy * slope, dz * slope
             for c in range(3):
-                value = values[3 * k + c]
+                value = get(values, 3 * k + c)
                 store(sums, 24 * c, load(sums, 24 * c) + dx * value)
                 store(sums, 24 * c + 8, load(sums, 24 * c + 8) + dy * value)
                 store(sums, 24 * c + 16, load(sums, 24 * c + 16) + dz * value)
         for i in range(8):
             for n in range(9):
-                put(out, 9 * (at + i) + n, sums[8 * n + i])
+                put(out, 9 * (at + i) + n, get(sums, 8 * n + i))
 
 
 @kernel

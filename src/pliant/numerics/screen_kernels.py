@@ -20,10 +20,10 @@ def cover(pixels, triangles, depth):
         area = (bx - ax) * (cy - ay) - (by - ay) * (cx - ax)
         if area == 0.0:
             continue
-        left = max(0, int(math.ceil(min(ax, bx, cx))))
-        right = min(columns - 1, int(math.floor(max(ax, bx, cx))))
-        low = max(0, int(math.ceil(min(ay, by, cy))))
-        high = min(rows - 1, int(math.floor(max(ay, by, cy))))
+        left = max(0, math.ceil(min(ax, bx, cx)))
+        right = min(columns - 1, math.floor(max(ax, bx, cx)))
+        low = max(0, math.ceil(min(ay, by, cy)))
+        high = min(rows - 1, math.floor(max(ay, by, cy)))
         for y in range(low, high + 1):
             for x in range(left, right + 1):
                 u = ((bx - x) * (cy - y) - (by - y) * (cx - x)) / area

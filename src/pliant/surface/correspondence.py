@@ -1,7 +1,7 @@
 """Which triangles of two meshes belong together: one mesh is deformed into the other, guided by markers.
 
-The energy of Sumner & Popović (2004, eq. 12): neighbouring triangles deform alike, all deform little, and vertices go to
-the closest points of the other mesh that face the same way. The last term's weight is raised step by step, and the
+The energy of Sumner & Popović (2004, eq. 12): neighbouring triangles deform alike, all deform little, and vertices go
+to the closest points of the other mesh that face the same way. The last term's weight is raised step by step, and the
 closest points are found anew in each.
 """
 

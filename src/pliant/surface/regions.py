@@ -25,7 +25,7 @@ def sphere(mesh: PolygonMesh, center: ArrayLike, radius: float) -> Integers:
     """
     middle = np.asarray(center, np.float64)
     if middle.shape != (3,) or not np.isfinite(middle).all():
-        raise InvalidParameter(f"a center is three numbers; given: {center}")
+        raise InvalidParameter(f"a center is three numbers; given: {center!r}")
     return np.flatnonzero(np.linalg.norm(mesh.points - middle, axis=1) <= _positive(radius))
 
 

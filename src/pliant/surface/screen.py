@@ -75,7 +75,7 @@ def in_lasso(mesh: PolygonMesh, camera: ArrayLike, outline: ArrayLike, *, visibl
 def _two(corner: ArrayLike) -> Floats:
     array = np.asarray(corner, np.float64)
     if array.shape != (2,) or not np.isfinite(array).all():
-        raise InvalidParameter(f"a corner is two screen coordinates; given: {corner}")
+        raise InvalidParameter(f"a corner is two screen coordinates; given: {corner!r}")
     return array
 
 

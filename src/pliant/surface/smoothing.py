@@ -51,8 +51,8 @@ def smooth(
         Explicit and Taubin: the part of the way to the neighbours' mean, in (0, 1]. Implicit and delta mush: the
         same, of a flow that lasts as long.
     weights
-        ``"cotangent"``, ``"intrinsic"``, ``"uniform"`` or (explicit and Taubin only) ``"mean value"``; None = cotangent,
-        or uniform for explicit and Taubin.
+        ``"cotangent"``, ``"intrinsic"``, ``"uniform"`` or (explicit and Taubin only) ``"mean value"``; None =
+        cotangent, or uniform for explicit and Taubin.
     rest
         For delta mush: the mesh before it was posed.
     within

@@ -29,8 +29,8 @@ class DeformationTransfer:
     """Puts a target mesh into the poses of a source mesh of another connectivity (Sumner & Popović 2004).
 
     Each triangle of the target is given the deformation gradient of the source triangles that belong to it; the
-    vertices are those whose gradients come nearest, weighted by area (Botsch et al. 2006). The matrix is factored once: a
-    pose costs one back-substitution. Both meshes stand in the same pose and orientation at rest.
+    vertices are those whose gradients come nearest, weighted by area (Botsch et al. 2006). The matrix is factored once:
+    a pose costs one back-substitution. Both meshes stand in the same pose and orientation at rest.
 
     Parameters
     ----------
