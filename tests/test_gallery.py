@@ -16,11 +16,13 @@ NUMBERS = {
     "bezier_ffd": (0.8, 0.2),  # the least volume ratio of the vase's dance: nothing folds
     "bspline_ffd": (0.0, 1e-8),  # the inverse brings every point back
     "displacement_arrows": (1.0, 1e-12),  # no point outruns the layers of control points
+    "fold_certificate": (0.391395, 1e-3),  # the step at which the first fold begins
     "hero": (3 * 96 / 72, 1e-12),  # three panels
     "local_support": (0.125563, 1e-5),
     "read_write_ffd": (0.0, 1e-7),  # the digits that the file keeps
     "smooth_patches": (0.0, 1e-6),  # no jump of the Jacobian
     "volume_change": (1.110635, 1e-5),
+    "volume_keeping": (0.0, 1e-12),  # nothing is missing
     "warped_grid": (0.4, 0.1),  # the longest displacement, in diagonals
 }
 

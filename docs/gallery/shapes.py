@@ -29,6 +29,17 @@ def shell(turns: float = 3.2, along: int = 420, around: int = 56) -> PolygonMesh
     return _tube(centers, outwards, up, 0.8 * growth, around, closed=False, repeats=(64, 8))
 
 
+def globe(along: int = 60, around: int = 96) -> PolygonMesh:
+    """A closed ball of quadrangles, of radius one."""
+    t, turn = np.pi * (np.arange(along) + 0.5) / along, np.linspace(0, 2 * np.pi, around, endpoint=False)
+    rings = np.stack([np.outer(np.sin(t), f(turn)) for f in (np.cos, np.sin)] + [np.outer(np.cos(t), turn * 0 + 1)], -1)
+    row = np.arange(around)
+    ring, step = np.meshgrid(np.arange(along - 1), row, indexing="ij")
+    places = [(ring, step), (ring + 1, step), (ring + 1, step + 1), (ring, step + 1)]
+    quads = np.stack([r * around + s % around for r, s in places], axis=-1).reshape(-1, 4)
+    return PolygonMesh(rings.reshape(-1, 3), [*quads, row, (along - 1) * around + row[::-1]])
+
+
 def _tube(centers, first, second, radii, around, *, closed=True, repeats=(1, 1)) -> PolygonMesh:
     """A tube of quadrangles through circles that two unit vectors span at each centre."""
     rings = len(centers)
