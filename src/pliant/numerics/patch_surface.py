@@ -34,7 +34,9 @@ class PatchSurface(NamedTuple):
         t = edges[:, 1] + bernstein_sum(parameters, moves, 0, 1)
         cross = np.cross(s, t)
         length = np.linalg.norm(cross, axis=1, keepdims=True)
-        proper = length > 1e-12 * np.linalg.norm(s, axis=1, keepdims=True) * np.linalg.norm(t, axis=1, keepdims=True)
+        size = np.linalg.norm(s, axis=1, keepdims=True), np.linalg.norm(t, axis=1, keepdims=True)
+        proper = length > 1e-12 * size[0] * size[1]
+        proper &= (size[0] > 1e-12 * np.linalg.norm(edges[:, 0])) & (size[1] > 1e-12 * np.linalg.norm(edges[:, 1]))
         length = np.where(proper, length, np.inf)
         normal = np.where(proper, cross / length, plane)
         twice = [bernstein_sum(parameters, moves, *order) if second else shift for order in ((2, 0), (1, 1), (0, 2))]
