@@ -17,6 +17,7 @@ import numpy as np
 from pliant.numerics.compiling import inlined, kernel
 from pliant.numerics.lanes import (
     clamp,
+    get,
     load,
     load_triples,
     put,
