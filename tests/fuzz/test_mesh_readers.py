@@ -66,9 +66,11 @@ def test_a_damaged_file_is_a_valid_mesh_or_a_clear_error(name: str) -> None:
     assert time.process_time() - begin < 60 + COUNT  # a reader that does not end would hang the run
 
 
-@pytest.mark.parametrize("ending", ["vtp", "vtk", "vtu"])
-def test_a_damaged_vtk_file_is_a_valid_mesh_or_a_clear_error(ending: str, tmp_path: Path) -> None:
-    pytest.importorskip("vtkmodules")
+@pytest.mark.parametrize("ending", ["vtp", "vtk", "vtu", "msh"])
+def test_a_damaged_file_that_another_library_reads_is_a_valid_mesh_or_a_clear_error(
+    ending: str, tmp_path: Path
+) -> None:
+    pytest.importorskip("meshio" if ending == "msh" else "vtkmodules")
     path = tmp_path / f"seed.{ending}"
     write(PolygonMesh(np.eye(3), [[0, 1, 2]], vertex_attributes={"heat": np.arange(3.0)}), path)
     for data in mutants(path.read_bytes(), list(SEEDS.values()), max(1, COUNT // 15), ending):  # a process each

@@ -23,7 +23,7 @@ REFUSED = 3
 
 def main(path: str, out: str, kind: str, memory: int, seconds: int) -> int:
     """Read a file within limits; returns the exit code."""
-    _limit(memory, seconds)
+    limit(memory, seconds)
     from vtkmodules.util import numpy_support
     from vtkmodules.vtkCommonCore import vtkOutputWindow, vtkStringOutputWindow
 
@@ -56,11 +56,16 @@ def main(path: str, out: str, kind: str, memory: int, seconds: int) -> int:
         if kind != "field":
             active = {word: getattr(fields, f"Get{word}")() for word in ("Scalars", "Vectors", "Normals", "TCoords")}
             meta["active"][kind] = {word: array.GetName() for word, array in active.items() if array}
+    hand_over(out, arrays, meta)
+    return 0
+
+
+def hand_over(out: str, arrays: dict[str, NDArray[Any]], meta: dict[str, Any]) -> None:
+    """Leave the arrays and what they are called for the process that waits for them."""
     with Path(out).open("wb") as stream:
         stream.write(json.dumps({**meta, "arrays": list(arrays)}).encode() + b"\n")
         for array in arrays.values():
             np.save(stream, array, allow_pickle=False)
-    return 0
 
 
 def _reader(path: str, kind: str) -> Any:
@@ -103,7 +108,8 @@ def _grid(data: Any, kind: str, to_numpy: Callable[[Any], NDArray[Any]]) -> NDAr
     return points
 
 
-def _limit(memory: int, seconds: int) -> None:
+def limit(memory: int, seconds: int) -> None:
+    """Bound what this process may take of memory and time."""
     try:
         import resource
     except ImportError:  # Windows has no such limits; the parent's time-out still holds

@@ -1,4 +1,4 @@
-"""Running the process that reads VTK files, and taking over its arrays."""
+"""Running the process in which another library reads a file, and taking over its arrays."""
 
 from __future__ import annotations
 
@@ -23,8 +23,10 @@ _SECONDS = 60
 _RATE = 1 << 20  # bytes a second that even a slow machine reads
 
 
-def read(source: Source, kind: str = "PolyData") -> tuple[dict[str, NDArray[Any]], dict[str, Any]]:
-    """The arrays of a VTK file, and the names that they have.
+def read(
+    source: Source, kind: str = "PolyData", *, child: str = "pliant.io.polydata_child", reader: str = "VTK"
+) -> tuple[dict[str, NDArray[Any]], dict[str, Any]]:
+    """The arrays of a file that another library reads, and the names that they have.
 
     Parameters
     ----------
@@ -32,11 +34,15 @@ def read(source: Source, kind: str = "PolyData") -> tuple[dict[str, NDArray[Any]
         The file.
     kind
         What it holds, by the name that VTK's classes have.
+    child
+        The module that the process runs.
+    reader
+        What that library is called in errors.
 
     Raises
     ------
     UnreadableFile
-        VTK complained, crashed, or went beyond its share of memory or time.
+        The library complained, crashed, or went beyond its share of memory or time.
     """
     memory = _MEMORY + _PER_BYTE * len(source.data)
     seconds = _SECONDS + len(source.data) // _RATE
@@ -44,25 +50,29 @@ def read(source: Source, kind: str = "PolyData") -> tuple[dict[str, NDArray[Any]
         path, out = Path(folder, "mesh"), Path(folder, "arrays")
         path.write_bytes(source.data)
         limits = [str(memory), str(seconds)]
-        command = [sys.executable, "-m", "pliant.io.polydata_child", str(path), str(out), kind, *limits]
+        command = [sys.executable, "-m", child, str(path), str(out), kind, *limits]
         try:
             done = subprocess.run(command, capture_output=True, timeout=2 * seconds, check=False)  # noqa: S603
         except subprocess.TimeoutExpired as error:
-            raise source.unreadable(f"VTK did not finish within {seconds} s", "the file is damaged") from error
+            raise source.unreadable(f"{reader} did not finish within {seconds} s", "the file is damaged") from error
         if done.returncode:
-            raise source.unreadable(_cause(done), "the file is cut off or damaged: copy or export it again")
+            raise source.unreadable(_cause(done, reader), "the file is cut off or damaged: copy or export it again")
         try:
             with out.open("rb") as stream:
                 meta: dict[str, Any] = json.loads(stream.readline())
                 return {name: np.load(stream, allow_pickle=False) for name in meta["arrays"]}, meta
         except (OSError, ValueError) as error:
-            raise source.unreadable("VTK gave no result", "the file is damaged: export it again") from error
+            raise source.unreadable(f"{reader} gave no result", "the file is damaged: export it again") from error
 
 
-def _cause(done: subprocess.CompletedProcess[bytes]) -> str:
-    """What VTK last said, in one line."""
+def _cause(done: subprocess.CompletedProcess[bytes], reader: str) -> str:
+    """What the library last said, in one line."""
     if done.returncode < 0:
-        return f"VTK crashed on it (signal {-done.returncode})"
+        return f"{reader} crashed on it (signal {-done.returncode})"
     said = _COLORS.sub("", done.stderr.decode("utf-8", "replace")).splitlines()
     errors = [re.split(r"\): |\| ", line)[-1].strip() for line in said if "ERR" in line or "Error" in line]
-    return f"VTK cannot read it: {errors[0][:200]}" if errors else "VTK cannot read it"
+    return (
+        f"{reader} cannot read it: {errors[-1 if reader != 'VTK' else 0][:200]}"
+        if errors
+        else f"{reader} cannot read it"
+    )
