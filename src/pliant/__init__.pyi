@@ -36,6 +36,9 @@ from .shape.kernels import InverseMultiquadricKernel as InverseMultiquadricKerne
 from .shape.kernels import MaternKernel as MaternKernel
 from .shape.kernels import RationalQuadraticKernel as RationalQuadraticKernel
 from .shape.model import ShapeModel as ShapeModel
+from .shape.procrustes import align as align
+from .shape.procrustes import generalized_procrustes as generalized_procrustes
+from .shape.registration import Fit as Fit
 from .space.affine import Affine as Affine
 from .space.bend import Bend as Bend
 from .space.bezier_ffd import BezierFFD as BezierFFD

@@ -1,0 +1,113 @@
+"""Which points of a target the points of a shape belong to: the closest ones, where they can be believed."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pliant.errors import InvalidTarget
+from pliant.mesh import PolygonMesh
+from pliant.numerics.closest_surface import Closest, TriangleSearch
+from pliant.numerics.ragged import Ragged
+
+Floats = NDArray[np.float64]
+Booleans = NDArray[np.bool_]
+
+
+class Target:
+    """A mesh, or bare points, to look for closest points on.
+
+    Parameters
+    ----------
+    mesh
+        Any topology; without faces, its points.
+    angle
+        Normals that differ by more, in radians, do not correspond.
+    """
+
+    def __init__(self, mesh: PolygonMesh, angle: float) -> None:
+        if not len(mesh.points):
+            raise InvalidTarget("the target has no points: there is nothing to fit to")
+        self.mesh, self._least = mesh, float(np.cos(angle))
+
+    def closest(self, points: Floats, *, exact: bool = False) -> Floats:
+        """(m, 3) the closest points."""
+        return self._query(points, exact=exact)[0]
+
+    def correspondences(self, points: Floats, normals: Floats | None) -> tuple[Floats, Floats | None, Booleans]:
+        """(m, 3) the closest points, (m, 3) the normals there, and (m,) whether they can be believed.
+
+        Those on the border of an open target are not: what lies beyond it is not in the target. Nor are those whose
+        normal disagrees.
+        """
+        places, found = self._query(points)
+        good = np.ones(len(points), bool)
+        if found is None:
+            return places, None, good
+        there = self._normals[found.triangles]
+        corners = self.mesh.triangles[found.triangles]
+        if self._open.any():
+            good &= ~((found.weights * ~self._open[corners]).sum(axis=1) < 1e-6)
+        if normals is not None:
+            good &= np.einsum("mi,mi->m", normals, there) >= self._least
+        return places, there, good
+
+    def _query(self, points: Floats, *, exact: bool = False) -> tuple[Floats, Closest | None]:
+        if len(self.mesh.triangles):
+            found = self._search.query(points, exact=exact)
+            return found.points, found
+        return self.mesh.points[self._tree.query(points)[1]], None
+
+    @cached_property
+    def _search(self) -> TriangleSearch:
+        return TriangleSearch(self.mesh.points, self.mesh.triangles)
+
+    @cached_property
+    def _tree(self) -> Any:
+        from scipy.spatial import cKDTree
+
+        return cKDTree(self.mesh.points)
+
+    @cached_property
+    def _normals(self) -> Floats:
+        return triangle_normals(self.mesh.points, self.mesh.triangles)
+
+    @cached_property
+    def _open(self) -> Booleans:
+        """(n,) vertices on a border; vertices at one place count as one, as in files that repeat them."""
+        points, faces = self.mesh.points, self.mesh.triangles
+        _, same = np.unique(points, axis=0, return_inverse=True)
+        sides = Ragged.of(same.reshape(-1)[faces])
+        edges = np.stack([sides.flat, np.roll(sides.flat.reshape(-1, 3), -1, axis=1).reshape(-1)], axis=1)
+        unique, count = np.unique(np.sort(edges, axis=1), axis=0, return_counts=True)
+        border = np.zeros(len(points), bool)
+        border[unique[count == 1].reshape(-1)] = True
+        return np.asarray(border[same.reshape(-1)])
+
+
+def triangle_normals(points: Floats, triangles: NDArray[np.int32]) -> Floats:
+    """(t, 3) unit normals; zero where a triangle has no area."""
+    a, b, c = points[triangles[:, 0]], points[triangles[:, 1]], points[triangles[:, 2]]
+    normals = cross(b - a, c - a)
+    length = np.sqrt(np.einsum("ti,ti->t", normals, normals))[:, None]
+    return np.asarray(np.divide(normals, length, out=np.zeros_like(normals), where=length > 0))
+
+
+def vertex_normals(points: Floats, triangles: NDArray[np.int32]) -> Floats:
+    """(n, 3) unit normals, weighted by area; zero where no triangle defines one."""
+    a, b, c = points[triangles[:, 0]], points[triangles[:, 1]], points[triangles[:, 2]]
+    normals, sums = cross(b - a, c - a), np.empty_like(points)
+    for axis in range(3):
+        share = np.repeat(normals[:, axis], 3)
+        sums[:, axis] = np.bincount(triangles.reshape(-1), share, minlength=len(points))
+    length = np.sqrt(np.einsum("ni,ni->n", sums, sums))[:, None]
+    return np.asarray(np.divide(sums, length, out=np.zeros_like(sums), where=length > 0))
+
+
+def cross(u: Floats, v: Floats) -> Floats:
+    """(t, 3) cross products, faster than NumPy's for short vectors."""
+    (a, b, c), (d, e, f) = u.T, v.T
+    return np.stack([b * f - c * e, c * d - a * f, a * e - b * d], axis=1)

@@ -1,0 +1,160 @@
+"""Fitting a model to a mesh without correspondence: closest points, then the most likely shape, and again (GP-ICP).
+
+Each round conditions the model on the points of the target that are closest to its present shape (Lüthi et al. 2018,
+section 4.3). The noise shrinks from round to round: at first only the strongest fields answer, at last all.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pliant.errors import InvalidParameter, NotConverged
+from pliant.mesh import Points, PolygonMesh
+from pliant.numerics.one_thread import one_blas_thread
+from pliant.shape import robust
+from pliant.shape.basis import Floats
+from pliant.shape.correspondence import Target, vertex_normals
+from pliant.shape.kernels import positive
+from pliant.shape.posterior import Noise, along_and_across, most_likely
+from pliant.shape.procrustes import align, moved
+
+if TYPE_CHECKING:
+    from pliant.shape.linear_model import LinearModel
+
+Pose = Literal["rigid", "similarity"]
+
+SETTLED = 1e-3  # of the last noise: a shape that moves less has converged
+_START = 0.02  # of the diagonal: the noise of the first round
+_FINAL = 1e-3  # of the diagonal: that of the last
+
+
+@dataclass(frozen=True, eq=False)
+class Fit:
+    """A model's shape fitted to a target.
+
+    Parameters
+    ----------
+    coefficients
+        (k,) in standard deviations.
+    points
+        (n, 3) the shape where the target is: after the pose.
+    pose
+        (4, 4) from the model's space to the target's.
+    distance
+        The mean distance of the shape's vertices from the target: a length.
+    status
+        ``"converged"``, or ``"stopped"`` at the largest number of iterations.
+    iterations
+        How many it took.
+    """
+
+    coefficients: Floats
+    points: Points
+    pose: Floats
+    distance: float
+    status: Literal["converged", "stopped"]
+    iterations: int
+
+
+def fit(
+    model: LinearModel,
+    mesh: PolygonMesh,
+    *,
+    iterations: int = 50,
+    noise: float | None = None,
+    start_noise: float | None = None,
+    pose: Pose | None = None,
+    loss: robust.Loss = "huber",
+    angle: float = np.pi / 3,
+    slide: float = 3.0,
+) -> Fit:
+    """Fit by GP-ICP; parameters as for :meth:`pliant.ShapeModel.fit`."""
+    size = model.reference.diagonal or 1.0
+    last = positive("the noise", _FINAL * size if noise is None else noise)
+    first = max(last, positive("the noise at the start", _START * size if start_noise is None else start_noise))
+    if iterations < 1 or pose not in (None, "rigid", "similarity"):
+        raise InvalidParameter(
+            f"a fit has at least one iteration, and a pose 'rigid', 'similarity' or None, not {pose!r}"
+        )
+    rounds = _Rounds(model, Target(mesh, angle), pose, loss, max(1.0, slide))
+    status: Literal["converged", "stopped"] = "stopped"
+    count = 0
+    with one_blas_thread():
+        for count in range(1, iterations + 1):
+            level = max(last, first * (last / first) ** (1.25 * (count - 1) / max(1, iterations - 1)))
+            step = rounds.advance(level)
+            if level == last and step < SETTLED * last:
+                status = "converged"
+                break
+    return rounds.result(status, count)
+
+
+class _Rounds:
+    """What changes from round to round: the coefficients and the pose."""
+
+    def __init__(
+        self,
+        model: LinearModel,
+        target: Target,
+        pose: Pose | None,
+        loss: robust.Loss,
+        slide: float,
+    ) -> None:
+        self._model, self._target, self._pose, self._loss, self._slide = model, target, pose, loss, slide
+        self._coefficients, self._matrix, self._shape = np.zeros(model.count), np.eye(4), model.mean
+        self._triangles = model.reference.triangles
+        if pose is not None:
+            self._matrix[:3, 3] = _middle(target.mesh) - _middle(model.reference.with_points(model.mean))
+
+    def advance(self, level: float) -> float:
+        """One round at a noise; how far the shape's vertices moved at most."""
+        posed = moved(self._matrix, self._shape)
+        normals = vertex_normals(posed, self._triangles) if len(self._triangles) else None
+        places, there, good = self._target.correspondences(posed, normals)
+        distance = np.linalg.norm(places - posed, axis=1)
+        weights = robust.weights(distance / max(level, float(np.median(distance))), self._loss) * good
+        used = np.flatnonzero(weights > 1e-6)
+        if len(used) < 3:
+            raise NotConverged(
+                "fewer than three points of the shape correspond to the target: align it first, allow a larger angle, "
+                "or turn normals that point inwards"
+            )
+        if self._pose is not None:
+            scale = self._pose == "similarity"
+            self._matrix = align(self._shape[used], places[used], scale=scale, weights=weights[used])
+        back = np.asarray(np.linalg.inv(self._matrix), np.float64)
+        goals, size = moved(back, places[used]), float(np.linalg.det(back[:3, :3])) ** (1 / 3)
+        precision = weights[used] / (level * size) ** 2
+        if there is not None and self._slide > 1.0:
+            directions = there[used] @ back[:3, :3].T / size
+            precision = precision[:, None, None] * along_and_across(directions, 1.0, 1 / self._slide)
+        new = self._conditioned(used, goals, Noise(precision, 0.0))
+        step = new - self._shape
+        self._shape = new
+        return float(np.sqrt(np.einsum("ni,ni->n", step, step).max()))
+
+    def _conditioned(self, used: NDArray[np.int64], goals: Floats, error: Noise) -> Points:
+        model = self._model
+        rows = model.basis if len(used) == len(model.mean) else model.basis.rows(used)
+        self._coefficients = most_likely(rows, goals - model.mean[used], error)
+        return model.instance(self._coefficients)
+
+    def result(self, status: Literal["converged", "stopped"], count: int) -> Fit:
+        points = moved(self._matrix, self._shape)
+        distance = np.linalg.norm(self._target.closest(points, exact=True) - points, axis=1)
+        return Fit(self._coefficients, points, self._matrix, float(distance.mean()), status, count)
+
+
+def _middle(mesh: PolygonMesh) -> Floats:
+    """(3,) the centre of the surface, or of the points where there is none."""
+    if not len(mesh.triangles):
+        return np.asarray(mesh.points.mean(axis=0))
+    corners = mesh.points[mesh.triangles]
+    area = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    if not area.sum() > 0:
+        return np.asarray(mesh.points.mean(axis=0))
+    return np.asarray(area @ corners.mean(axis=1) / area.sum())
