@@ -175,20 +175,23 @@ def mesh_formats() -> str:
     from pliant.io.meshes import formats
 
     known = formats()
-    rows = [["", *(f"{each['name']} `{each['suffixes'][0]}`" for each in known)], ["---"] * (len(known) + 1)]
+    rows = [["", *(each["name"] for each in known)], ["---"] * (len(known) + 1)]
+    rows.append(["endings", *(" ".join(f"`{ending}`" for ending in each["suffixes"]) for each in known)])
     properties = [key for key in known[0] if key not in {"name", "suffixes"}]
     for key in properties:
         name = key.replace("_", " ").replace("uvs", "texture coordinates")
-        rows += [[name, *(cell(each[key]) for each in known)]]
+        rows.append([name, *(cell(each[key] if each["written"] or key != "precision" else False) for each in known)])
     return "\n".join(f"| {' | '.join(row)} |" for row in rows)
 
 
 def transform_formats() -> str:
-    """The transform formats and their endings."""
-    from pliant.io.transforms import FORMATS
+    """The transform formats: what they hold, and what their numbers mean."""
+    from pliant.io.transforms import formats
 
-    rows = [f"| {each.name} | {', '.join(f'`{ending}`' for ending in each.endings)} |" for each in FORMATS]
-    return "\n".join(["| format | endings |", "|---|---|", *rows])
+    known = formats()
+    columns = list(known[0])
+    rows = [f"| {' | '.join(cell(row[column]) for column in columns)} |" for row in known]
+    return "\n".join([f"| {' | '.join(columns)} |", "|---" * len(columns) + "|", *rows])
 
 
 def layers() -> str:

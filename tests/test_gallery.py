@@ -14,8 +14,13 @@ GALLERY = Path(__file__).parents[1] / "docs" / "gallery"
 SCRIPTS = sorted(path.stem for path in GALLERY.glob("*.py") if path.stem != "shapes")
 NUMBERS = {
     "bezier_ffd": (0.8, 0.2),  # the least volume ratio of the vase's dance: nothing folds
+    "bezier_patch": (0.0, 1e-12),  # studs keep their height
     "bspline_ffd": (0.0, 1e-8),  # the inverse brings every point back
+    "clamped_ffd": (0.059475, 1e-5),
+    "dirichlet_ffd": (0.0, 1e-12),  # sites go where they are moved
     "displacement_arrows": (1.0, 1e-12),  # no point outruns the layers of control points
+    "extended_ffd": (0.0, 1e-12),  # the lattice at rest gives every point back
+    "displacement_grid": (3.0276, 1e-3),
     "fold_certificate": (0.391395, 1e-3),  # the step at which the first fold begins
     "hero": (3 * 96 / 72, 1e-12),  # three panels
     "local_support": (0.125563, 1e-5),

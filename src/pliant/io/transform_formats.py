@@ -36,7 +36,7 @@ FORMATS = (
         re.compile(rb"#\s*control grid size"),
         "zxhproj_ffd",
         Conventions(
-            "B-splines (variant C: Bernstein lattices)",
+            "B-splines (variant C, another kind of lattice, is read)",
             _RAS,
             _PULL,
             "displacements along the lattice's axes; x, y, z together; first index fastest",
@@ -163,7 +163,7 @@ FORMATS = (
         re.compile(rb"\A\s*1\s*\r?\n\s*\d+\s+\d+\s+\d+\s"),
         "plot3d",
         Conventions(
-            "clamped B-splines of order up to 4 in a box",
+            "clamped B-splines of order up to 4 in a box; Bernstein lattices of up to 4 control points an axis",
             _OWN,
             _PUSH,
             "positions of control points; all x, all y, all z; first index fastest",
