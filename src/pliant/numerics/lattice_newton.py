@@ -13,6 +13,9 @@ from pliant.numerics.tricubic import _corner, _tabulate, _tabulate_slopes
 
 HALVINGS = 12  # of a step that does not lower the residual
 
+RECORD = 12  # numbers kept of a point, side by side: its image, then
+BEST, STEP, LEAST, RATIO, HALVED = 3, 6, 9, 10, 11
+
 
 @inlined
 def _cube_with_slopes(lattice, at, down_x, down_y, table, sums, to):
@@ -83,43 +86,43 @@ def _equations(here, at, length, sums, affine, frame, found):
 
 
 @inlined
-def _judge(here, at, length, found, lane, point, best, step, least, ratio, halvings):
+def _judge(here, at, length, found, lane, state, record):
     """Keep a trial that lowers the residual, with the step from there; go half as far from the best one otherwise."""
     size, whole, square = get(found, 40 + lane), get(found, 24 + lane), get(found, 32 + lane)
-    if size < get(least, point):
+    if size < get(state, record + LEAST):
         regular = whole * whole > 1e-28 * square * square * square
         factor = 1.0 / whole if regular else 1.0
         for c in range(3):
-            put(best, 3 * point + c, get(here, c * length + at))
-            put(step, 3 * point + c, factor * get(found, (0 if regular else 48) + 8 * c + lane))
-        put(least, point, size)
-        put(ratio, point, whole)
-        halvings[point] = 0
+            put(state, record + BEST + c, get(here, c * length + at))
+            put(state, record + STEP + c, factor * get(found, (0 if regular else 48) + 8 * c + lane))
+        put(state, record + LEAST, size)
+        put(state, record + RATIO, whole)
+        put(state, record + HALVED, 0.0)
     else:
         for c in range(3):
-            put(step, 3 * point + c, 0.5 * get(step, 3 * point + c))
-        halvings[point] += 1
+            put(state, record + STEP + c, 0.5 * get(state, record + STEP + c))
+        put(state, record + HALVED, get(state, record + HALVED) + 1.0)
 
 
 @inlined
-def _keep_unsolved(count, accepted, active, trial, best, step, least, halvings):
+def _keep_unsolved(count, accepted, active, trial, state):
     """Write the active points that go on, and their next trials, to the front; their number."""
     left = 0
     for place in range(count):
         point = get(active, place)
-        if get(least, point) <= accepted or halvings[point] > HALVINGS:
+        record = RECORD * point
+        if get(state, record + LEAST) <= accepted or get(state, record + HALVED) > HALVINGS:
             continue
         active[left] = point
         for c in range(3):
-            put(trial, 3 * left + c, get(best, 3 * point + c) + get(step, 3 * point + c))
+            put(trial, 3 * left + c, get(state, record + BEST + c) + get(state, record + STEP + c))
         left += 1
     return left
 
 
 @kernel
 def advance(
-    starts, order, local, frame, grid, stride, basis, lattice, shape, affine, images, accepted,
-    active, trial, best, step, least, ratio, halvings,
+    starts, order, local, frame, grid, stride, basis, lattice, shape, affine, accepted, active, trial, state
 ):  # fmt: skip
     """One step of Newton's method for a chunk's active points; the number of those that are still active.
 
@@ -129,23 +132,23 @@ def advance(
         The trial points, sorted by cell, and the sum: see :mod:`pliant.numerics.tricubic`.
     affine
         (3, 4) A and t.
-    images, accepted
-        What the chunk's points shall become, flat; the residual that counts as solved.
+    accepted
+        The residual that counts as solved.
     active, trial
         (k,) numbers of the active points in the chunk, and where to try next, flat; overwritten.
-    best, step, least, ratio, halvings
-        Of each point in the chunk: the best place so far, the step from there, the residual's length and det J
-        there, and how often the step was halved.
+    state
+        A record of each point of the chunk, flat: its image (3), the best place so far (3), the step from there (3),
+        the residual's length and det J there, and how often the step was halved.
     """
     length, cells, count = len(local) // 3, len(starts) - 2, starts[-1]
     table, sums, here, found = np.empty(192), np.zeros(96), np.zeros(6 * length), np.empty(72)
     down_x, down_y = shape[1] * shape[2] * 3, shape[2] * 3
     for at in range(count):  # trial points and images, sorted as the cells' points
         place = get(order, at)
-        point = get(active, place)
+        record = RECORD * get(active, place)
         for c in range(3):
             put(here, c * length + at, get(trial, 3 * place + c))
-            put(here, (3 + c) * length + at, get(images, 3 * point + c))
+            put(here, (3 + c) * length + at, get(state, record + c))
     for cell in range(cells + 1):
         if cell == cells:  # where nothing moves but by A and t
             sums[:] = 0.0
@@ -159,6 +162,5 @@ def advance(
                     _cube_with_slopes(lattice, corner + c, down_x, down_y, table, sums, 32 * c)
             _equations(here, at, length, sums, affine, frame, found)
             for i in range(min(8, starts[cell + 1] - at)):
-                point = get(active, get(order, at + i))
-                _judge(here, at + i, length, found, i, point, best, step, least, ratio, halvings)
-    return _keep_unsolved(count, accepted, active, trial, best, step, least, halvings)
+                _judge(here, at + i, length, found, i, state, RECORD * get(active, get(order, at + i)))
+    return _keep_unsolved(count, accepted, active, trial, state)

@@ -84,29 +84,34 @@ def solve(
     iterations
         Largest number of Newton steps.
     fused
-        A kernel that does the first two stages at once: from images, accepted residual and iterations to pre-images,
-        residuals' lengths and det J.
+        A kernel to try first: from images, accepted residual and iterations to pre-images, residuals' lengths and
+        det J.
     """
     if not len(images):
         none = np.zeros(0, bool)
         return Solution(images, images.copy(), np.zeros(0), none, none)
     scale = float(np.linalg.norm([np.ptp(images[:, axis]) for axis in range(3)])) or 1.0
     accepted = tolerance * scale
-    if fused is None:
-        x = images.copy()
-        _iterate_fixed_point(f, images, x)
-        _, error = _newton(f, jacobian, images, x, accepted, iterations)
-        ratio = np.linalg.det(jacobian(x))
-    else:
+    x, error, ratio = images.copy(), np.full(len(images), np.inf), np.ones(len(images))
+    if fused is not None:
         x, error, ratio = fused(images, accepted, iterations)
-    failed = np.flatnonzero(~(error <= accepted))
-    if len(failed):
-        followed = _follow(f, jacobian, images[failed], accepted, iterations)
-        left = np.linalg.norm(images[failed] - f(followed), axis=1)
-        better = left < error[failed]
-        x[failed[better]], error[failed[better]] = followed[better], left[better]
-        ratio[failed] = np.linalg.det(jacobian(x[failed]))
+    for approach in (_iterate, _follow):
+        failed = np.flatnonzero(~(error <= accepted))
+        if len(failed):
+            found = approach(f, jacobian, images[failed], accepted, iterations)
+            left = np.linalg.norm(images[failed] - f(found), axis=1)
+            better = ~(left >= error[failed])
+            x[failed[better]], error[failed[better]] = found[better], left[better]
+            ratio[failed] = np.linalg.det(jacobian(x[failed]))
     return Solution(images, x, error, error <= accepted, ratio <= 0)
+
+
+def _iterate(f: Map, jacobian: Map, images: Floats, accepted: float, iterations: int) -> Floats:
+    """Fixed-point iteration, then Newton's method."""
+    x = images.copy()
+    _iterate_fixed_point(f, images, x)
+    _newton(f, jacobian, images, x, accepted, iterations)
+    return x
 
 
 def _iterate_fixed_point(f: Map, images: Floats, x: Floats) -> None:
@@ -120,10 +125,8 @@ def _iterate_fixed_point(f: Map, images: Floats, x: Floats) -> None:
             return
 
 
-def _newton(
-    f: Map, jacobian: Map, images: Floats, x: Floats, accepted: float, iterations: int
-) -> tuple[NDArray[np.int64], Floats]:
-    """Improve ``x`` in place; the rows that did not converge, and all residuals' lengths."""
+def _newton(f: Map, jacobian: Map, images: Floats, x: Floats, accepted: float, iterations: int) -> None:
+    """Improve ``x`` in place."""
     residual = images - f(x)
     error = np.linalg.norm(residual, axis=1)
     active = np.flatnonzero(~(error <= accepted))
@@ -133,7 +136,6 @@ def _newton(
         before = error[active]
         _advance(f, images, x, residual, error, active, _solve(jacobian(x[active]), residual[active]))
         active = active[~(error[active] <= accepted) & (error[active] < before)]  # one that does not move is lost
-    return np.flatnonzero(~(error <= accepted)), error
 
 
 def _follow(f: Map, jacobian: Map, images: Floats, accepted: float, iterations: int) -> Floats:
