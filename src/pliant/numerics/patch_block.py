@@ -68,6 +68,17 @@ class PatchBlock:
                 index = np.take(index, (places + shift) % index.shape[axis], axis=axis)
         return np.ascontiguousarray(index)
 
+    def links(self) -> list[Integers]:
+        """(e, 2) along each axis the pairs of neighbours, without those that are collapsed into one."""
+        found = []
+        for axis, wrapped in enumerate(self.wrapped):
+            index = np.moveaxis(self.index, axis, 0)
+            after = np.roll(index, -1, axis=0)
+            last = len(index) if wrapped else len(index) - 1
+            pairs = np.stack([index[:last], after[:last]], axis=-1).reshape(-1, 2)
+            found.append(pairs[pairs[:, 0] != pairs[:, 1]])
+        return found
+
     def parameters(self, controls: Floats, points: Floats, seeds: Floats | None = None) -> tuple[Floats, Integers]:
         """Parameters of points, and which of them the block contains.
 

@@ -22,7 +22,8 @@ def add_lattice(drawing: Any, deformer: Deformer, size: float, theme: Theme) -> 
     """Draw control points with their lattice; where they are.
 
     The few that moved are marked, and drawn faintly also at rest; where most moved, marks would only be noise.
-    Controls of shape (k, 3) have no lattice; parameters and coefficients are not drawn at all.
+    Controls of shape (k, 3) have a lattice only where the deformer knows their ``links``; parameters and coefficients
+    are not drawn at all.
     """
     rest, controls = deformer.rest, deformer.controls
     if controls.ndim not in {2, 4} or controls.shape[-1] != 3 or not controls.size:
@@ -33,8 +34,8 @@ def add_lattice(drawing: Any, deformer: Deformer, size: float, theme: Theme) -> 
         moved[:] = False
     ball = min(0.0085 * size, 0.16 * _closest(rest))
     wire = 0.17 * ball
-    if controls.ndim == 4:
-        edges = lattice_edges(controls.shape[:3])
+    edges = lattice_edges(controls.shape[:3]) if controls.ndim == 4 else getattr(deformer, "links", None)
+    if edges is not None:
         stretched = moved[edges].any(axis=1)
         add_lines(drawing, at, Ragged.of(edges), wire, theme.ink)
         if stretched.any():

@@ -154,6 +154,12 @@ class ExtendedFFD(SpaceDeformer):
     def controls(self) -> Controls:
         return np.asarray(self.points + self._moves)
 
+    @property
+    def links(self) -> Integers:
+        """(e, 2) pairs of control points that are neighbours in the lattice."""
+        pairs = [pair for block in self.blocks for pair in block.links()]
+        return np.unique(np.sort(np.concatenate(pairs), axis=1), axis=0)
+
     def moved(self, controls: ArrayLike) -> Self:
         return replace(self, displacements=checked_controls(controls, self.points.shape) - self.points)
 
