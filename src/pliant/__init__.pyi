@@ -11,10 +11,15 @@ from .field.keeping import preserve_volume as preserve_volume
 from .field.limiting import limit_to_fold_free as limit_to_fold_free
 from .field.measures import principal_strains as principal_strains
 from .field.measures import volume_ratio as volume_ratio
+from .field.resampling import warp_image as warp_image
 from .field.vectors import Arrows as Arrows
 from .field.vectors import arrows as arrows
 from .field.volumes import volume as volume
 from .field.volumes import volume_gradient as volume_gradient
+from .io.conversion import convert_transform as convert_transform
+from .io.images import Image as Image
+from .io.images import read_image as read_image
+from .io.images import write_image as write_image
 from .io.landmarks import Landmarks as Landmarks
 from .io.landmarks import read_landmarks as read_landmarks
 from .io.landmarks import write_landmarks as write_landmarks
@@ -30,6 +35,7 @@ from .io.transforms import write_transform as write_transform
 from .mesh import PolygonMesh as PolygonMesh
 from .rendering.pictures import render as render
 from .shape.bspline_kernel import BSplineKernel as BSplineKernel
+from .shape.gaussian_process import GaussianProcess as GaussianProcess
 from .shape.kernels import ExponentialKernel as ExponentialKernel
 from .shape.kernels import GaussianKernel as GaussianKernel
 from .shape.kernels import InverseMultiquadricKernel as InverseMultiquadricKernel

@@ -15,16 +15,15 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from pliant.deformer import Deformer, SpaceDeformer
+from pliant.deformer import SpaceDeformer
 from pliant.errors import UnreadableFile, UnsupportedFormat
 from pliant.io.anatomy import half_turned
 from pliant.io.file_facts import FileFacts
 from pliant.io.itk_matrices import RULES, affine_of
-from pliant.io.lattice_padding import surrounded
 from pliant.io.orientation import orthonormal
 from pliant.space.affine import Affine
 from pliant.space.bspline_ffd import BSplineFFD
-from pliant.space.compose import Composition, compose
+from pliant.space.compose import compose
 from pliant.space.displacement_grid import DisplacementGrid
 
 Floats = NDArray[np.float64]
@@ -32,8 +31,8 @@ Basic = Affine | BSplineFFD | DisplacementGrid
 
 RIM = 0.5  # of a voxel: how far images reach beyond their voxels' centres
 _LATTICES = ("BSplineTransform", "BSplineDeformableTransform")
-_FIELD = "DisplacementFieldTransform"
-_COMPOSITE = "CompositeTransform"
+FIELD = "DisplacementFieldTransform"
+COMPOSITE = "CompositeTransform"
 _GEOMETRY = 18  # size, origin, spacing and direction
 
 
@@ -80,10 +79,10 @@ def deformer_of(path: Path, parts: Sequence[Part], form: str) -> SpaceDeformer:
         A kind of transform that pliant does not have.
     """
     facts = FileFacts(form, {"transforms": ", ".join(part.name for part in parts)})
-    components = [part for part in parts if part.kind != _COMPOSITE]
+    components = [part for part in parts if part.kind != COMPOSITE]
     if not components:
         raise UnreadableFile(path, "the file holds no transform", "it may be cut off")
-    if len(components) > 1 and parts[0].kind != _COMPOSITE:
+    if len(components) > 1 and parts[0].kind != COMPOSITE:
         raise UnreadableFile(
             path,
             f"the file holds {len(components)} transforms and does not say how they belong together",
@@ -107,10 +106,10 @@ def _basic(path: Path, part: Part) -> Basic:
                 f"{count} and none, 3 or 4 are expected",
             )
         return half_turned(affine_of(part.kind, part.fixed, part.parameters))
-    if part.kind not in (*_LATTICES, _FIELD):
+    if part.kind not in (*_LATTICES, FIELD):
         raise UnsupportedFormat(
             f"{path}: {part.place} is a {part.kind}, which pliant does not read: there are {', '.join(RULES)}, "
-            f"{', '.join(_LATTICES)}, {_FIELD} and {_COMPOSITE} (in ITK, convert it to a displacement field)"
+            f"{', '.join(_LATTICES)}, {FIELD} and {COMPOSITE} (in ITK, convert it to a displacement field)"
         )
     if part.kind in _LATTICES:
         return half_turned(lattice_of(path, part))
@@ -185,68 +184,3 @@ def _joined(maps: list[Basic]) -> list[Basic]:
 
 def _is_regular(linear: Floats) -> bool:
     return bool(np.linalg.cond(linear) < 1e12)
-
-
-def parts_of(deformer: Deformer, path: Path) -> tuple[list[Part], tuple[str, ...]]:
-    """The transforms that hold a deformer, a composite first where there are several; and what they lose.
-
-    Raises
-    ------
-    UnsupportedFormat
-        A deformer that ITK has no transform for.
-    """
-    parts: list[Part] = []
-    losses: list[str] = []
-    for component in reversed(_components(deformer)):
-        found, lost = _written(component, path)
-        parts += found
-        losses += lost
-    if len(parts) > 1:
-        nothing = np.empty(0)
-        parts.insert(0, Part(f"{_COMPOSITE}_double_3_3", nothing, nothing, ""))
-    return parts, tuple(dict.fromkeys(losses))
-
-
-def _components(deformer: Deformer) -> list[Deformer]:
-    """In the order of application."""
-    if not isinstance(deformer, Composition):
-        return [deformer]
-    return [part for each in deformer.deformers for part in _components(each)]
-
-
-def _written(deformer: Deformer, path: Path) -> tuple[list[Part], tuple[str, ...]]:
-    """The transforms of one map, the last applied first."""
-    if isinstance(deformer, Affine):
-        return [_affine_part(half_turned(deformer))], ()
-    if isinstance(deformer, BSplineFFD):
-        turned = half_turned(deformer)
-        linear = turned.affine[:3, :3]
-        if np.array_equal(turned.affine, np.eye(4)):
-            after = []
-        else:
-            turned = replace(turned, displacements=turned.displacements @ np.linalg.inv(linear).T)
-            after = [_affine_part(Affine(turned.affine))]
-        values, origin, losses = surrounded(turned)
-        fixed = _fixed(values.shape[:3], origin, turned.spacing, turned.axes)
-        flat = values.transpose(3, 2, 1, 0).reshape(-1)
-        return [*after, Part("BSplineTransform_double_3_3", fixed, flat, "")], losses
-    if isinstance(deformer, DisplacementGrid) and deformer.interpolation == "linear":
-        grid = half_turned(deformer)
-        fixed = _fixed(deformer.shape, grid.origin, grid.spacing, grid.axes)
-        flat = grid.displacements.transpose(2, 1, 0, 3).reshape(-1)
-        same = deformer.outside == "identity" and deformer.rim == RIM
-        lost = () if same else ("the grid's border: half a spacing beyond its outermost nodes nothing moves any more",)
-        return [Part(f"{_FIELD}_double_3_3", fixed, flat, "")], lost
-    raise UnsupportedFormat(
-        f"{path}: ITK has no transform for a {type(deformer).__name__}: sample it with pliant.to_grid, or convert it "
-        "with a refit, and write that"
-    )
-
-
-def _affine_part(affine: Affine) -> Part:
-    numbers = np.concatenate([affine.linear.reshape(-1), affine.offset])
-    return Part("AffineTransform_double_3_3", np.zeros(3), numbers, "")
-
-
-def _fixed(shape: Sequence[int], origin: Floats, spacing: Floats, axes: Floats) -> Floats:
-    return np.concatenate([np.array(shape, np.float64), origin, spacing, axes.reshape(-1)])

@@ -10,7 +10,8 @@ import numpy as np
 from pliant.deformer import Deformer, SpaceDeformer
 from pliant.errors import UnreadableFile
 from pliant.io.files import write_bytes
-from pliant.io.itk_parts import Part, deformer_of, parts_of
+from pliant.io.itk_parts import Part, deformer_of
+from pliant.io.itk_writing import parts_of
 from pliant.io.report import LossReport, refuse_losses
 from pliant.io.transform_options import ReadOptions
 from pliant.io.words import numbers, spaced
