@@ -16,6 +16,7 @@ from pliant.numerics.determinants import Determinants
 from pliant.numerics.polynomial_cells import PolynomialCells
 
 _SAMPLES = 32  # along each axis, where nothing can be proved
+_INSIDE = 1e-9  # of a cell: its faces belong to its neighbours too, where the Jacobian may be another
 
 
 def certify(
@@ -139,8 +140,10 @@ def _is_injective(cells: PolynomialCells, found: Range) -> bool | None:
 
 
 def _place(cells: PolynomialCells, extreme: Extreme) -> Points:
-    """Where an extreme was found; one that holds outside all cells, beside their corner."""
-    return cells.position(max(extreme.cell, 0), np.array(extreme.local) if extreme.cell >= 0 else np.full(3, -1.0))
+    """Where an extreme was found, a trifle inside its cell; one that holds outside all cells, beside their corner."""
+    if extreme.cell < 0:
+        return cells.position(0, np.full(3, -1.0))
+    return cells.position(extreme.cell, np.array(extreme.local) * (1 - 2 * _INSIDE) + _INSIDE)
 
 
 def _sampled(deformer: SpaceDeformer, proof: Certificate, bounds: tuple[ArrayLike, ArrayLike] | None) -> Certificate:

@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 from pliant.deformer import Controls, Deformer, SpaceDeformer
 from pliant.errors import InvalidDeformer, InvalidParameter, NotConverged, PliantWarning
 from pliant.field.certifying import certify
-from pliant.field.volumes import volume, volume_gradient
+from pliant.field.volumes import unchecked_gradient, unchecked_volume, volume
 from pliant.mesh import PolygonMesh
 
 Map = TypeVar("Map", bound=Deformer)
@@ -63,10 +63,10 @@ def preserve_volume(deformer: Map, mesh: PolygonMesh, free: ArrayLike | None = N
     wanted, bound, controls = volume(mesh), deformer.bind(mesh), deformer.controls.copy()
     for axis, share in enumerate(_SHARES):
         moved = mesh.with_points(bound.deform(controls))
-        gradient = bound.vjp(controls, volume_gradient(moved))[..., axis] * mask
-        controls[..., axis] += _step(gradient, share * (wanted - volume(moved)))
+        gradient = bound.vjp(controls, unchecked_gradient(moved))[..., axis] * mask
+        controls[..., axis] += _step(gradient, share * (wanted - unchecked_volume(moved)))
     kept = deformer.moved(controls)
-    found = volume(mesh.with_points(bound.deform(controls)))
+    found = unchecked_volume(mesh.with_points(bound.deform(controls)))
     if not np.isclose(found, wanted, rtol=1e-9, atol=0.0):
         name = type(deformer).__name__
         raise NotConverged(f"the volume is {found:.9g}, not {wanted:.9g}: a {name} is not linear in its controls")

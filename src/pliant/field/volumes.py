@@ -34,8 +34,7 @@ def volume(mesh: PolygonMesh) -> float:
         The mesh is open, or neighbouring faces disagree about the outside; the edges are counted.
     """
     _require_closed(mesh)
-    centroids, area_vectors = _polygons(mesh)
-    return float(np.einsum("ij,ij->i", centroids, area_vectors).sum() / 6)
+    return unchecked_volume(mesh)
 
 
 def volume_gradient(mesh: PolygonMesh) -> Points:
@@ -49,6 +48,17 @@ def volume_gradient(mesh: PolygonMesh) -> Points:
         As :func:`volume`.
     """
     _require_closed(mesh)
+    return unchecked_gradient(mesh)
+
+
+def unchecked_volume(mesh: PolygonMesh) -> float:
+    """As :func:`volume`, of a mesh that is known to be closed."""
+    centroids, area_vectors = _polygons(mesh)
+    return float(np.einsum("ij,ij->i", centroids, area_vectors).sum() / 6)
+
+
+def unchecked_gradient(mesh: PolygonMesh) -> Points:
+    """As :func:`volume_gradient`, of a mesh that is known to be closed."""
     centroids, area_vectors = _polygons(mesh)
     filled = mesh.faces.lengths > 0
     sides = mesh.faces.lengths[filled]

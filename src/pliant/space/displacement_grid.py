@@ -14,6 +14,7 @@ from pliant.errors import InvalidDeformer
 from pliant.mesh import Points, as_points
 from pliant.numerics.cells import BSPLINE, CellGrid, CellPoints
 from pliant.numerics.grid_points import GridPoints
+from pliant.numerics.polynomial_cells import PolynomialCells
 from pliant.numerics.ragged import frozen
 from pliant.space.box import checked_axes
 from pliant.space.control_maps import ControlMap, Extraction, Padding
@@ -149,11 +150,29 @@ class DisplacementGrid(SpaceDeformer):
         near = [(np.abs(q - kink) <= room).any(axis=1) for kink in kinks]
         return np.asarray(~np.any(near, axis=0))
 
-    def _sampled(self, points: Points) -> CellPoints | GridPoints:
-        shape = np.array(self.shape)
+    def polynomial_cells(self) -> PolynomialCells:
+        """The map cell by cell, as far as displacements vary: what proofs about it need."""
+        values, frame = self._values, self._frame
+        inner = self.displacements[tuple(slice(1, -1) if n > 1 else slice(None) for n in self.shape)]
+        continuous = self.outside == "clamp" or np.count_nonzero(inner) == np.count_nonzero(self.displacements)
+        if self.interpolation == "cubic":
+            cubic = PolynomialCells(values, frame, np.eye(3), (3, 3, 3), (1, 1, 1), splines=True)
+            return replace(cubic, continuous=continuous)
+        values = np.pad(values, [(1, 1)] * 3 + [(0, 0)], mode="edge")  # beyond the nodes slopes are others
+        frame[:, 3] += 1
+        linear = PolynomialCells(values, frame, np.eye(3), (1, 1, 1), (1, 1, 1), splines=False)
+        return replace(linear, continuous=continuous)
+
+    @property
+    def _frame(self) -> Floats:
+        """(3, 4) from positions to nodes, counted from 0."""
         frame = np.empty((3, 4))
         frame[:, :3] = self.axes.T / self.spacing[:, None]
         frame[:, 3] = -frame[:, :3] @ self.origin
+        return frame
+
+    def _sampled(self, points: Points) -> CellPoints | GridPoints:
+        shape, frame = np.array(self.shape), self._frame
         reach = self.rim if self.outside == "identity" else np.inf
         keep = np.stack([np.full(3, -reach), shape - 1 + reach])
         if self.interpolation == "linear":
