@@ -113,7 +113,7 @@ def test_niftyreg_deformation_fields(tmp_path, kind, absolute):
     assert np.abs(pl.read_transform(path)(nodes) - nodes - moves.reshape(-1, 3)).max() < 1e-5
 
 
-@pytest.mark.parametrize("edge", ["clamp", "zero"])
+@pytest.mark.parametrize("edge", ["clamp", "zero", "identity"])
 def test_our_lattices_as_niftyreg_has_them(tmp_path, edge):
     path = tmp_path / "ours.nii.gz"
     values = np.random.default_rng(2).normal(size=(6, 5, 7, 3)) * 0.3

@@ -32,6 +32,7 @@ class Edge(StrEnum):
 
     clamp = "clamp"
     zero = "zero"
+    identity = "identity"
 
 
 class MeshSpace(StrEnum):
@@ -52,7 +53,9 @@ PlacementOption = Annotated[
 VariantOption = Annotated[
     Variant | None, typer.Option(help="Layout of an .FFD file, where the guess is wrong.", show_default=False)
 ]
-EdgeOption = Annotated[Edge, typer.Option(help="Beyond the lattice: repeat its outermost points, or do not move.")]
+EdgeOption = Annotated[
+    Edge, typer.Option(help="Beyond the lattice: repeat its outermost points, add none, or move nothing.")
+]
 OriginOption = Annotated[
     str | None, typer.Option(metavar="X,Y,Z", help="Where the lattice begins, if its file does not say.")
 ]

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from math import prod
 from pathlib import Path
-from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,7 +11,7 @@ from numpy.typing import NDArray
 from pliant.errors import UnreadableFile, UnsupportedFormat
 from pliant.io.orientation import orthonormal
 from pliant.io.words import require_usable
-from pliant.space.bspline_ffd import BSplineFFD
+from pliant.space.bspline_ffd import BSplineFFD, Edge
 
 Floats = NDArray[np.float64]
 
@@ -23,7 +22,7 @@ _NO_THIRD_AXIS = 4  # the oldest type: the third axis is the product of the firs
 _X_FASTEST = 50  # from this type on
 _EXTRAPOLATION = 70  # from this type on, the file says what stands beyond the lattice
 _CONSTANT, _NEAREST = 2, 3
-_EDGES: dict[int, Literal["clamp", "zero"]] = {0: "zero", 1: "zero", _CONSTANT: "zero", _NEAREST: "clamp"}
+_EDGES: dict[int, Edge] = {0: "zero", 1: "zero", _CONSTANT: "zero", _NEAREST: "clamp"}
 
 
 class Cursor:
@@ -57,7 +56,7 @@ class Cursor:
         return UnreadableFile(self.path, cause, "the file is cut off or damaged", byte=self._at)
 
 
-def read_lattice(cursor: Cursor, kind: int, edge: Literal["clamp", "zero"]) -> BSplineFFD:
+def read_lattice(cursor: Cursor, kind: int, edge: Edge) -> BSplineFFD:
     """The lattice that begins after its type; ``edge`` where the file does not say what stands beyond it.
 
     Raises

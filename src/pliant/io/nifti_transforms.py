@@ -124,10 +124,7 @@ def _write_spline(ffd: BSplineFFD, path: Path, *, strict: bool) -> LossReport:
     same = np.array_equal(ffd.affine, np.eye(4))
     losses = () if same else ("the affine part beyond the lattice: within it, the control points hold it",)
     refuse_losses(losses, path, strict=strict)
-    edge = "zero" if ffd.edge == "zero" else "clamp"
-    notes = [f"what stands beyond the lattice is not stored: pass edge={edge!r} when reading"]
-    if ffd.edge == "identity":
-        notes = ["that nothing moves beyond the lattice is not stored: readers repeat its outermost control points"]
+    notes = [f"what stands beyond the lattice is not stored: pass edge={ffd.edge!r} when reading"]
     notes += [NOTE] if ffd.direction != "pull-back" else []
     image = Image(positions, origin, ffd.spacing, ffd.axes)
     notes += write_nifti(path, positions[:, :, :, None], matrix_of(image), intent=(_VECTORS, _NIFTYREG, float(_SPLINE)))

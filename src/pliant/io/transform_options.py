@@ -14,7 +14,7 @@ from pliant.mesh import PolygonMesh
 
 Placement = Literal["physical", "fit"]
 Variant = Literal["A", "B", "C", "D"]
-Edge = Literal["clamp", "zero"]
+Edge = Literal["clamp", "zero", "identity"]
 
 
 @dataclass(frozen=True)

@@ -46,8 +46,8 @@ def read_transform(
     target
         The mesh to fit to.
     edge
-        Beyond a B-spline lattice: ``"clamp"`` repeats its outermost control points, ``"zero"`` takes no
-        displacement there.
+        Beyond a B-spline lattice whose file does not say: ``"clamp"`` repeats its outermost control points, ``"zero"``
+        takes no displacement there, ``"identity"`` moves nothing where control points are missing.
     origin
         (3,) where control point (0, 0, 0) lies, for a file that does not say; otherwise (0, 0, 0), with a warning.
 
