@@ -13,22 +13,36 @@ from PIL import Image
 GALLERY = Path(__file__).parents[1] / "docs" / "gallery"
 SCRIPTS = sorted(path.stem for path in GALLERY.glob("*.py") if path.stem != "shapes")
 NUMBERS = {
+    "bend": (1.0, 1e-6),  # the bent axis keeps its length
     "bezier_ffd": (0.8, 0.2),  # the least volume ratio of the vase's dance: nothing folds
     "bezier_patch": (0.0, 1e-12),  # studs keep their height
     "bspline_ffd": (0.0, 1e-8),  # the inverse brings every point back
     "clamped_ffd": (0.059475, 1e-5),
+    "compose": (0.0, 0.0),  # with the twist at rest the bend is left, exactly
     "dirichlet_ffd": (0.0, 1e-12),  # sites go where they are moved
     "displacement_arrows": (1.0, 1e-12),  # no point outruns the layers of control points
-    "extended_ffd": (0.0, 1e-12),  # the lattice at rest gives every point back
     "displacement_grid": (3.0276, 1e-3),
+    "extended_ffd": (0.0, 1e-12),  # the lattice at rest gives every point back
+    "flare": (0.244132, 1e-5),  # the square of the narrowest scale
     "fold_certificate": (0.391395, 1e-3),  # the step at which the first fold begins
     "hero": (3 * 96 / 72, 1e-12),  # three panels
     "local_support": (0.125563, 1e-5),
+    "place": (0.0, 0.0),  # no point is moved by the tool everywhere it goes
+    "pull": (0.0, 1e-12),  # held points are where they shall be
+    "radial_basis_warp": (0.57775, 1e-9),  # the part of the points that nothing reaches
     "read_write_ffd": (0.0, 1e-7),  # the digits that the file keeps
+    "scale": (1.6 * 1.1 * 0.6, 1e-12),
+    "sine": (0.0, 1e-12),  # sliding keeps volume
     "smooth_patches": (0.0, 1e-6),  # no jump of the Jacobian
+    "squash": (0.0, 1e-3),  # the faces are flat
+    "tangent_frames": (1.1, 1e-5),  # each segment grows by a tenth
+    "taper": (0.0, 1e-12),  # there and back
+    "thin_plate_spline": (0.0, 1e-10),  # landmarks are where they shall be
+    "twist": (0.0, 1e-12),  # volume is kept
     "volume_change": (1.110635, 1e-5),
     "volume_keeping": (0.0, 1e-12),  # nothing is missing
     "warped_grid": (0.4, 0.1),  # the longest displacement, in diagonals
+    "wave": (0.0, 1e-12),  # there and back
 }
 
 

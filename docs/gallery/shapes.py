@@ -53,3 +53,24 @@ def _tube(centers, first, second, radii, around, *, closed=True, repeats=(1, 1))
     u, v = np.meshgrid(np.linspace(0, 1, rings + 1), np.linspace(0, 1, around + 1), indexing="ij")
     places = np.stack([u * repeats[0], v * repeats[1]], axis=-1).reshape(-1, 2) / 16
     return PolygonMesh(points.reshape(-1, 3), quads, uvs=CornerValues(places, texture))
+
+
+def pillar(width: float = 1.0, height: float = 4.0, cells: int = 24) -> PolygonMesh:
+    """A closed square pillar that stands on the origin, of small quadrangles, with a checkerboard's coordinates."""
+    counts = np.array([cells, cells, int(cells * height / width)])
+    size = np.array([width, width, height])
+    points, faces, places = [], [], []
+    for axis in range(3):
+        i, j = (axis + 1) % 3, (axis + 2) % 3
+        for end in (0, 1):
+            u, v = np.meshgrid(np.arange(counts[i] + 1), np.arange(counts[j] + 1), indexing="ij")
+            side = np.zeros((u.size, 3))
+            side[:, i], side[:, j], side[:, axis] = u.ravel() / counts[i], v.ravel() / counts[j], end
+            first = (np.arange(counts[i])[:, None] * (counts[j] + 1) + np.arange(counts[j])).reshape(-1, 1)
+            corner = first + np.array([0, counts[j] + 1, counts[j] + 2, 1])[:: 1 if end else -1]
+            faces.append(corner + sum(map(len, points)))
+            points.append(side * size - [width / 2, width / 2, 0])
+            places.append(np.stack([u.ravel(), v.ravel()], axis=1) / 48)
+    faces = np.vstack(faces)
+    unique, index = np.unique(np.round(np.vstack(points), 9), axis=0, return_inverse=True)
+    return PolygonMesh(unique, index.reshape(-1)[faces], uvs=CornerValues(np.vstack(places), faces.reshape(-1)))
