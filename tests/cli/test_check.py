@@ -61,6 +61,14 @@ def test_volume_of_a_mesh(run, lattice, cube, tmp_path):
     assert "the volume changes by" in result.stderr
 
 
+def test_a_mesh_in_the_other_axes(run, lattice, cube, tmp_path):
+    turned = tmp_path / "turned.obj"
+    pl.write(pl.Affine.scaling((-1, -1, 1))(pl.read(cube)), turned)
+    here = json.loads(run("check", lattice, "--mesh", cube, "--json").stdout)["volume_change"]
+    there = json.loads(run("check", lattice, "--mesh", turned, "--mesh-space", "LPS", "--json").stdout)["volume_change"]
+    assert there == pytest.approx(here, abs=1e-9)
+
+
 def test_affine_maps_are_exact(run, tmp_path):
     path = tmp_path / "double.AFF"
     pl.write_transform(pl.Affine.scaling(2), path)

@@ -102,12 +102,12 @@ def test_help_imports_nothing_heavy():
     )
     told = shell("--help", code=code).stdout
     assert told.endswith("[]\n")
-    for word in ("deform", "info", "convert", "render", "demo", "Exit codes", "not converged"):
+    for word in ("deform", "info", "check", "convert", "render", "demo", "Exit codes", "not converged"):
         assert word in told
 
 
 def test_every_command_explains_itself(run):
-    for command in ("deform", "info", "convert", "render", "demo"):
+    for command in ("deform", "info", "check", "convert", "render", "demo"):
         text = run(command, "--help").stdout
         assert text.startswith("Usage:")
         assert "--json" in text

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from pliant.cli import options as opt
+from pliant.cli.choice import half_turn
 from pliant.cli.exits import Exit
 from pliant.cli.session import Session
 
@@ -35,6 +36,7 @@ def check(
     variant: opt.VariantOption = None,
     edge: opt.EdgeOption = opt.Edge.clamp,
     origin: opt.OriginOption = None,
+    mesh_space: opt.MeshSpaceOption = opt.MeshSpace.as_is,
     budget: Annotated[int, typer.Option(min=0, help="How many boxes a proof may halve.")] = 20_000,
     json: opt.JsonOption = False,
     quiet: opt.QuietOption = False,
@@ -52,6 +54,8 @@ def check(
         from pliant.io.transforms import read_transform
 
         shape = None if mesh is None else read(mesh)
+        if shape is not None and mesh_space is opt.MeshSpace.lps:
+            shape = half_turn()(shape)
         deformer = read_transform(
             file,
             placement=placement.value,
