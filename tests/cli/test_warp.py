@@ -80,3 +80,14 @@ def test_converts_the_inverse(run, files):
     points = np.random.default_rng(0).uniform(2, 13, (50, 3))
     there = pl.read_transform(files / "map.tfm")(points)
     assert np.abs(pl.read_transform(out)(there) - points).max() < 0.02
+
+
+def test_a_mesh_in_lps_moves_as_itk_moves_its_points(run, files, cube):
+    import SimpleITK as sitk  # noqa: N813
+
+    out = files / "moved.obj"
+    result = run("deform", cube, "--ffd", files / "map.tfm", "--mesh-space", "LPS", "-o", out)
+    assert result.exit_code == 0, result.stderr
+    transform = sitk.ReadTransform(str(files / "map.tfm"))
+    expected = [transform.TransformPoint(point) for point in pl.read(cube).points.tolist()]
+    assert np.abs(pl.read(out).points - expected).max() < 1e-9
