@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import base64
+import io
 import struct
+import zipfile
 
 import numpy as np
 
@@ -158,6 +160,21 @@ def gltf(*, binary: bool) -> bytes:
     return b"glTF" + struct.pack("<II", 2, 12 + len(body)) + body
 
 
+def threemf() -> bytes:
+    """A 3MF package of a triangle built twice."""
+    text = (
+        '<model unit="millimeter"><resources><basematerials id="1"><base name="red" displaycolor="#FF0000"/>'
+        '</basematerials><object id="2" pid="1" pindex="0"><mesh><vertices><vertex x="0" y="0" z="0"/>'
+        '<vertex x="1" y="0" z="0"/><vertex x="0" y="1" z="0"/></vertices><triangles>'
+        '<triangle v1="0" v2="1" v3="2"/></triangles></mesh></object></resources><build><item objectid="2"/>'
+        '<item objectid="2" transform="2 0 0 0 2 0 0 0 2 1 0 0"/></build></model>'
+    )
+    out = io.BytesIO()
+    with zipfile.ZipFile(out, "w") as package:
+        package.writestr(zipfile.ZipInfo("3D/3dmodel.model"), text)
+    return out.getvalue()
+
+
 SEEDS = {
     "obj": OBJ,
     "obj-colors": OBJ_COLORS,
@@ -171,6 +188,7 @@ SEEDS = {
     "xyz": b"# a cloud\n0 0 0 255 0 0\n1 0 0 0 255 0\n0 1e-3 0 0 0 255\n",
     "glb": gltf(binary=True),
     "gltf": gltf(binary=False),
+    "3mf": threemf(),
     "ply-text": PLY_TEXT,
     "ply-little": ply_binary("<"),
     "ply-big": ply_binary(">"),

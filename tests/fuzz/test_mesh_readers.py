@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import importlib.util
+import io
 import os
 import sys
 import time
 import tracemalloc
 import warnings
+import zipfile
 from pathlib import Path
 from types import ModuleType
 
@@ -64,6 +66,18 @@ def test_a_damaged_file_is_a_valid_mesh_or_a_clear_error(name: str) -> None:
         if mesh is not None:
             require_valid(mesh)
     assert time.process_time() - begin < 60 + COUNT  # a reader that does not end would hang the run
+
+
+def test_a_damaged_model_in_a_sound_package_is_a_valid_mesh_or_a_clear_error() -> None:
+    with zipfile.ZipFile(io.BytesIO(SEEDS["3mf"])) as package:
+        text = package.read("3D/3dmodel.model")
+    for damaged in mutants(text, list(SEEDS.values()), COUNT, "model"):  # else the checksum tells at once
+        out = io.BytesIO()
+        with zipfile.ZipFile(out, "w") as package:
+            package.writestr("3D/3dmodel.model", damaged)
+        mesh = attempt(out.getvalue(), "3mf")
+        if mesh is not None:
+            require_valid(mesh)
 
 
 @pytest.mark.parametrize("ending", ["vtp", "vtk", "vtu", "msh"])

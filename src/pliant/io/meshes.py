@@ -30,6 +30,7 @@ _FORMATS = {  # module and class by ending; files are recognised in this order
     "pliant.io.unstructured:Unstructured": (".vtu", ".vtk"),
     "pliant.io.vtk_grid:VtkGrid": (".vti", ".vtr", ".vts"),
     "pliant.io.gmsh:Gmsh": (".msh",),
+    "pliant.io.threemf:ThreeMf": (".3mf",),
     "pliant.io.off:Off": (".off", ".coff", ".noff", ".stoff", ".cnoff", ".stcnoff"),
     "pliant.io.stl:Stl": (".stl",),
     "pliant.io.obj:Obj": (".obj",),
