@@ -48,7 +48,7 @@ def test_a_model_comes_back_to_single_precision(model, written):
     again = pl.read_model(written)
     np.testing.assert_array_equal(again.mean, model.mean.astype(np.float32))
     np.testing.assert_array_equal(again.reference.triangles, model.reference.triangles)
-    np.testing.assert_allclose(again.variances, np.repeat(model.variances, 3), rtol=1e-6)
+    np.testing.assert_allclose(again.variances, model.variances, rtol=1e-6)
     given = np.random.default_rng(0).normal(size=model.count)
     np.testing.assert_allclose(again.instance(given), model.instance(given), atol=1e-6)
     assert again.convention == model.convention
@@ -264,3 +264,12 @@ def test_files_that_are_cut_off_are_refused(written, tmp_path):
         (tmp_path / "cut.h5").write_bytes(data[:stop])
         with pytest.raises(UnreadableFile):
             pl.read_model(tmp_path / "cut.h5")
+
+
+def test_fields_of_a_scalar_kernel_are_found_to_be_so(model, tmp_path):
+    pl.write_model(model, tmp_path / "a.h5")
+    again = pl.read_model(tmp_path / "a.h5")
+    assert again.basis.scalar
+    assert again.rank == model.rank
+    pl.write_model(again.posterior([0], model.mean[:1], noise=np.diag([1.0, 2, 3])), tmp_path / "b.h5")
+    assert not pl.read_model(tmp_path / "b.h5").basis.scalar

@@ -17,7 +17,7 @@ from pliant.errors import PliantError, UnreadableFile
 from pliant.io.model_tree import Tree
 from pliant.mesh import PolygonMesh
 from pliant.numerics.ragged import Ragged
-from pliant.shape.basis import FullBasis
+from pliant.shape.basis import factored
 from pliant.shape.model import ShapeModel
 from pliant.shape.tetrahedra import boundary
 
@@ -56,7 +56,7 @@ def model_of(tree: Tree, path: Path, prefix: str | None = None) -> ShapeModel:
         return ShapeModel(
             _mesh(points.T, cells),
             mean.reshape(-1, 3),
-            FullBasis(np.ascontiguousarray(fields).reshape(count, 3, -1), deviations),
+            factored(np.ascontiguousarray(fields).reshape(count, 3, len(deviations)), deviations),
             cells=cells if cells is not None and cells.shape[1] == 4 else None,
             convention="continuous" if tree.values.get(_CONVENTION) == "continuous" else "discrete",
             noise_variance=_noise(tree, found),

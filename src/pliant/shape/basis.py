@@ -6,6 +6,7 @@ coordinate c along field j.
 
 from __future__ import annotations
 
+import math
 from abc import ABC, abstractmethod
 from dataclasses import dataclass
 
@@ -96,7 +97,7 @@ class ScalarBasis(Basis):
 
     def apply(self, coefficients: Floats, dtype: DTypeLike = np.float64) -> NDArray[np.floating]:
         shape = (*coefficients.shape[:-1], self.size, 3)
-        stacked = coefficients.reshape(-1, self.rank, 3).astype(dtype, copy=False)
+        stacked = coefficients.reshape(math.prod(shape[:-2]), self.rank, 3).astype(dtype, copy=False)
         if len(stacked) < _FEW:
             factors = self.factors.astype(dtype, copy=False)
             return np.asarray([factors @ each for each in stacked], dtype).reshape(shape)
@@ -147,7 +148,7 @@ class FullBasis(Basis):
 
     def apply(self, coefficients: Floats, dtype: DTypeLike = np.float64) -> NDArray[np.floating]:
         shape = (*coefficients.shape[:-1], self.size, 3)
-        stacked = coefficients.reshape(-1, self.count).astype(dtype, copy=False)
+        stacked = coefficients.reshape(math.prod(shape[:-2]), self.count).astype(dtype, copy=False)
         return np.asarray(stacked @ self._flat.T.astype(dtype, copy=False)).reshape(shape)
 
     def transpose(self, values: Floats) -> Floats:
@@ -176,6 +177,18 @@ def many(factors: Floats, flat: NDArray[np.floating], count: int, dtype: DTypeLi
     with one_blas_thread():
         for_chunks(work, len(factors), max(16, _BLOCK // (3 * count)))
     return out
+
+
+def factored(fields: Floats, deviations: Floats) -> Basis:
+    """The basis of (n, 3, k) fields: a scalar one, where they are those of one coordinate after the other."""
+    count = len(deviations)
+    if count % 3 == 0 and count:
+        blocks = fields.reshape(len(fields), 3, -1, 3)
+        first = np.ascontiguousarray(blocks[:, 0, :, 0])
+        alike = all(np.array_equal(blocks[:, c, :, c], first) for c in (1, 2))
+        if alike and not any(blocks[:, c, :, d].any() for c in range(3) for d in range(3) if c != d):
+            return ScalarBasis(first, deviations[::3])
+    return FullBasis(fields, deviations)
 
 
 def everywhere(matrix: Floats) -> Floats:

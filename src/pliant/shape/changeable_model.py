@@ -17,7 +17,7 @@ from pliant.shape.linear_model import LinearModel
 from pliant.shape.pivoted_cholesky import pivoted_cholesky
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class ChangeableModel(LinearModel):
     """A model that gives others."""
 

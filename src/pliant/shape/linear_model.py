@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -20,7 +20,7 @@ from pliant.shape.low_rank import Convention, LowRank
 RIDGE = 1e-14  # of the largest eigenvalue: coefficients of fields that a shape does not show are zero
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class LinearModel:
     """What all models have; the parameters are those of :class:`~pliant.shape.model.ShapeModel`."""
 
@@ -31,7 +31,7 @@ class LinearModel:
     cells: NDArray[np.int32] | None = None
     convention: Convention = "discrete"
     noise_variance: float = 0.0
-    carrier: Any = field(default=None, repr=False)
+    carrier: Any = None
 
     def __post_init__(self) -> None:
         mean, count = as_points(self.mean), len(self.reference.points)
@@ -41,6 +41,9 @@ class LinearModel:
                 "have the same"
             )
         object.__setattr__(self, "mean", frozen(mean, np.float64))
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({len(self.mean):,} points, rank {self.rank}, {self.count} coefficients)"
 
     @property
     def rank(self) -> int:

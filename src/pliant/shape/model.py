@@ -27,7 +27,7 @@ from pliant.shape.robust import Loss
 from pliant.shape.surface_samples import Spread, surface_samples
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class ShapeModel(ChangeableModel):
     """A statistical model of a shape: triangle or polygon meshes, tetrahedra, lines, or bare points.
 

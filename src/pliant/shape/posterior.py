@@ -60,6 +60,19 @@ class Noise:
             raise InvalidParameter("covariance matrices of noise must be symmetric and positive definite")
         return cls(np.asarray(np.linalg.inv(matrices), np.float64), float(np.linalg.slogdet(matrices)[1].sum()))
 
+    def covariances(self) -> Floats:
+        """(m, 3, 3) of each observation."""
+        if self.precision.ndim == 1:
+            return np.asarray((1 / self.precision)[:, None, None] * np.eye(3))
+        return np.asarray(np.linalg.inv(self.precision), np.float64)
+
+    def joined(self, other: Noise) -> Noise:
+        """That of these observations and then others."""
+        one, two = self.precision, other.precision
+        if one.ndim != two.ndim:
+            one, two = (p[:, None, None] * np.eye(3) if p.ndim == 1 else p for p in (one, two))
+        return Noise(np.concatenate([one, two]), self.log_determinant + other.log_determinant)
+
     def weighted(self, values: Floats) -> Floats:
         """(m, 3) the precision times (m, 3) values."""
         if self.precision.ndim == 1:

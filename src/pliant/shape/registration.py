@@ -30,6 +30,7 @@ Pose = Literal["rigid", "similarity"]
 SETTLED = 1e-3  # of the last noise: a shape that moves less has converged
 _START = 0.02  # of the diagonal: the noise of the first round
 _FINAL = 1e-3  # of the diagonal: that of the last
+_MOST = 4000  # vertices that look for closest points: more say little more
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,7 +46,7 @@ class Fit:
     pose
         (4, 4) from the model's space to the target's.
     distance
-        The mean distance of the shape's vertices from the target: a length.
+        The mean distance of the shape's vertices, 4,000 of them at most, from the target: a length.
     status
         ``"converged"``, or ``"stopped"`` at the largest number of iterations.
     iterations
@@ -107,13 +108,16 @@ class _Rounds:
         self._model, self._target, self._pose, self._loss, self._slide = model, target, pose, loss, slide
         self._coefficients, self._matrix, self._shape = np.zeros(model.count), np.eye(4), model.mean
         self._triangles = model.reference.triangles
+        self._chosen = np.arange(0, len(model.mean), -(-len(model.mean) // _MOST))
+        self._rows = model.basis if len(self._chosen) == len(model.mean) else model.basis.rows(self._chosen)
         if pose is not None:
             self._matrix[:3, 3] = _middle(target.mesh) - _middle(model.reference.with_points(model.mean))
 
     def advance(self, level: float) -> float:
         """One round at a noise; how far the shape's vertices moved at most."""
         posed = moved(self._matrix, self._shape)
-        normals = vertex_normals(posed, self._triangles) if len(self._triangles) else None
+        normals = vertex_normals(posed, self._triangles)[self._chosen] if len(self._triangles) else None
+        posed = posed[self._chosen]
         places, there, good = self._target.correspondences(posed, normals)
         distance = np.linalg.norm(places - posed, axis=1)
         weights = robust.weights(distance / max(level, float(np.median(distance))), self._loss) * good
@@ -125,7 +129,8 @@ class _Rounds:
             )
         if self._pose is not None:
             scale = self._pose == "similarity"
-            self._matrix = align(self._shape[used], places[used], scale=scale, weights=weights[used])
+            shape = self._shape[self._chosen[used]]
+            self._matrix = align(shape, places[used], scale=scale, weights=weights[used])
         back = np.asarray(np.linalg.inv(self._matrix), np.float64)
         goals, size = moved(back, places[used]), float(np.linalg.det(back[:3, :3])) ** (1 / 3)
         precision = weights[used] / (level * size) ** 2
@@ -139,13 +144,14 @@ class _Rounds:
 
     def _conditioned(self, used: NDArray[np.int64], goals: Floats, error: Noise) -> Points:
         model = self._model
-        rows = model.basis if len(used) == len(model.mean) else model.basis.rows(used)
-        self._coefficients = most_likely(rows, goals - model.mean[used], error)
+        rows = self._rows if len(used) == len(self._chosen) else self._rows.rows(used)
+        self._coefficients = most_likely(rows, goals - model.mean[self._chosen[used]], error)
         return model.instance(self._coefficients)
 
     def result(self, status: Literal["converged", "stopped"], count: int) -> Fit:
         points = moved(self._matrix, self._shape)
-        distance = np.linalg.norm(self._target.closest(points, exact=True) - points, axis=1)
+        some = points[self._chosen]
+        distance = np.linalg.norm(self._target.closest(some, exact=True) - some, axis=1)
         return Fit(self._coefficients, points, self._matrix, float(distance.mean()), status, count)
 
 
