@@ -109,7 +109,8 @@ def _unsaid(name: str) -> typer.BadParameter:
 
 
 def _has_option(kind: Any) -> bool:
-    return bool(getattr(kind, "parameters", ())) and hasattr(kind, "around") and not inspect.isabstract(kind)
+    named = getattr(kind, "parameters", ())
+    return isinstance(named, tuple) and bool(named) and hasattr(kind, "around") and not inspect.isabstract(kind)
 
 
 def _value(text: str, *, radians: bool, option: str) -> Any:
