@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from scipy.sparse import csr_array
 from scipy.spatial import ConvexHull, Voronoi, cKDTree
 
 from pliant.errors import InvalidDeformer, InvalidMesh
@@ -95,6 +96,23 @@ def test_agrees_with_the_textbook(random):
         taken = np.array([volume(before, i) - volume(after, i) if row[i] else 0.0 for i in range(len(sites))])
         assert np.nansum(taken) == pytest.approx(volume(after, len(sites)), rel=1e-9)
         assert np.abs(taken / volume(after, len(sites)) - row).max() < 1e-10
+
+
+def test_a_search_that_goes_astray_is_noticed_and_repeated(random):
+    """Corners that do not know of each other hold the search up at the first facet."""
+    box, points = GhostBox(random.random((60, 3)), 1.0, "sibson"), random.uniform(-0.5, 0.5, (200, 3))
+    expected = box.neighbors.at(points, gradients=True)
+    cells = box.neighbors.cells
+    facets = np.repeat(np.arange(len(cells.owners), dtype=np.int32), np.diff(cells.corner_starts))
+    alone = np.arange(len(facets))
+    cells.__dict__["arrays"] = cells.arrays._replace(
+        meetings=alone.astype(np.int32), meeting_starts=np.append(alone, len(alone)), meeting_facets=facets
+    )
+    found = box.neighbors.at(points, gradients=True)
+    first, second = (
+        csr_array((c.values, c.sites, c.starts), shape=(200, len(box.everyone))).toarray() for c in (expected, found)
+    )
+    assert np.abs(first - second).max() < 1e-15
 
 
 def test_laplace_coordinates_are_areas_over_distances(random):

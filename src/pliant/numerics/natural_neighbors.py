@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -41,6 +41,23 @@ class Coordinates:
     gradients: Floats
 
 
+class SeedGrid(NamedTuple):
+    """A grid with a site near each cell: where the search for a point's cell begins.
+
+    Parameters
+    ----------
+    low, rate, side
+        (3,) its corner, (3,) cells a length, and how many cells there are along each axis.
+    sites
+        (side^3,) a site near each cell's middle.
+    """
+
+    low: Floats
+    rate: Floats
+    side: int
+    sites: NDArray[np.int32]
+
+
 @dataclass(frozen=True, eq=False)
 class NaturalNeighbors:
     """Sites, ready to be asked for the coordinates of points.
@@ -66,6 +83,7 @@ class NaturalNeighbors:
 
         cells, flat = self.cells, np.ascontiguousarray(points).reshape(-1)
         kind = sibson.SIBSON if self.kind == "sibson" else sibson.LAPLACE
+        arrays, rounding = cells.arrays, 1e-15 * float(np.abs(cells.corners).max())  # of cuts as large as the cube
         parts: dict[int, tuple[Integers, NDArray[np.int32], Floats, Floats]] = {}
 
         def work(start: int, stop: int) -> None:
@@ -74,10 +92,8 @@ class NaturalNeighbors:
                 ends, columns, values = np.empty(stop - start, np.int64), np.empty(room, np.int32), np.empty(room)
                 slopes = np.empty(3 * room if gradients else 0)
                 done = sibson.coordinates(
-                    flat, start, stop, cells.sites.reshape(-1), cells.starts, cells.facets, cells.owners,
-                    cells.others, cells.normals.reshape(-1), cells.offsets, cells.corner_starts,
-                    cells.corners.reshape(-1),
-                    *self._seeds, kind, self.on_site, self._rounding, ends, columns, values, slopes,
+                    flat, start, stop, arrays, self._seeds, kind, self.on_site, rounding,
+                    ends, columns, values, slopes,
                 )  # fmt: skip
                 if done == stop - start:
                     break
@@ -95,18 +111,12 @@ class NaturalNeighbors:
         return Coordinates(starts, columns, values, slopes.reshape(-1, 3))
 
     @cached_property
-    def _rounding(self) -> float:
-        """How well corners are known: those of the largest cells are cut from polygons as large as the cube."""
-        return 1e-15 * float(np.abs(self.cells.corners).max())
-
-    @cached_property
-    def _seeds(self) -> tuple[Floats, Integers, NDArray[np.int32]]:
-        """A grid with a site near each cell, fine enough that searches are short."""
+    def _seeds(self) -> SeedGrid:
         from scipy.spatial import cKDTree
 
         sites = self.cells.sites
         low, extent = sites.min(axis=0), np.ptp(sites, axis=0)
-        side = int(np.clip(np.ceil((16 * len(sites)) ** (1 / 3)), 4, 64))
+        side = int(np.clip(np.ceil((64 * len(sites)) ** (1 / 3)), 4, 64))
         middles = np.stack(np.meshgrid(*[(np.arange(side) + 0.5) / side] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
         near = cKDTree(sites).query(low + middles * extent)[1].astype(np.int32)
-        return np.stack([low, side / extent]), np.full(3, side), near
+        return SeedGrid(low, side / extent, side, near)
