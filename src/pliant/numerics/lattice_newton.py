@@ -141,7 +141,7 @@ def advance(
         the residual's length and det J there, and how often the step was halved.
     """
     length, cells, count = len(local) // 3, len(starts) - 2, starts[-1]
-    table, sums, here, found = np.empty(192), np.zeros(96), np.zeros(6 * length), np.empty(72)
+    table, sums, here, found = np.empty(192), np.zeros(96), np.empty(6 * length), np.empty(72)
     down_x, down_y = shape[1] * shape[2] * 3, shape[2] * 3
     for at in range(count):  # trial points and images, sorted as the cells' points
         place = get(order, at)
