@@ -42,6 +42,11 @@ from .shape.kernels import InverseMultiquadricKernel as InverseMultiquadricKerne
 from .shape.kernels import MaternKernel as MaternKernel
 from .shape.kernels import RationalQuadraticKernel as RationalQuadraticKernel
 from .shape.model import ShapeModel as ShapeModel
+from .shape.metrics import compactness as compactness
+from .shape.metrics import generalization as generalization
+from .shape.metrics import leave_one_out as leave_one_out
+from .shape.metrics import specificity as specificity
+from .shape.pca import learn_model as learn_model
 from .shape.procrustes import align as align
 from .shape.procrustes import generalized_procrustes as generalized_procrustes
 from .shape.registration import Fit as Fit
