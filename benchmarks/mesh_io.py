@@ -30,7 +30,7 @@ from vtkmodules.vtkIOXML import vtkXMLPolyDataReader, vtkXMLPolyDataWriter
 import pliant as pl
 
 Action = Callable[[], object]
-FORMATS = {"obj": "obj", "ply": "ply", "stl": "stl", "off": "off"}
+FORMATS = {"obj": "obj", "ply": "ply", "stl": "stl", "off": "off", "glb": "glb"}
 
 
 def grid(triangles: int) -> pl.PolygonMesh:
@@ -58,7 +58,7 @@ def readers(path: Path) -> dict[str, Action]:
     return {
         "pliant": lambda: pl.read(path),
         "trimesh": lambda: trimesh.load(path, process=False, force="mesh"),
-        "meshio": lambda: meshio.read(path),
+        **({} if path.suffix == ".glb" else {"meshio": lambda: meshio.read(path)}),
     }
 
 
@@ -69,7 +69,7 @@ def writers(mesh: pl.PolygonMesh, folder: Path, ending: str) -> dict[str, Action
     return {
         "pliant": lambda: pl.write(mesh, folder / f"pliant.{ending}"),
         "trimesh": lambda: (other._cache.clear(), other.export(folder / f"trimesh.{ending}")),
-        "meshio": lambda: meshio.write(folder / f"meshio.{ending}", third, **options),
+        **({} if ending == "glb" else {"meshio": lambda: meshio.write(folder / f"meshio.{ending}", third, **options)}),
     }
 
 

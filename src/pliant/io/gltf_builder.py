@@ -63,12 +63,12 @@ def new_file(mesh: PolygonMesh, keeps: Keeps, path: Path) -> Encoded:
     attributes = _attributes(mesh, made, points[source], source, corner_of)
     primitives = []
     labels = mesh.materials
-    which = np.full(len(triangles), -1) if labels is None else labels.indices[mesh.triangle_faces]
+    which = np.empty(0, np.int32) if labels is None else labels.indices[mesh.triangle_faces]
     known = list(mesh.material_library)
     if labels is not None:
         known += [name for name in labels.names if name not in known]
-    for label in np.unique(which).tolist():
-        chosen = np.ascontiguousarray(triangles[which == label]).astype(np.uint32).ravel()
+    for label in np.unique(which).tolist() if len(which) else [-1] * bool(len(triangles)):
+        chosen = (triangles[which == label] if len(which) else triangles).astype(np.uint32).ravel()
         said: dict[str, Any] = {"attributes": attributes, "indices": made.accessor(chosen, _ELEMENTS)}
         if label >= 0 and labels is not None:
             said["material"] = known.index(labels.names[label])
@@ -99,23 +99,30 @@ def new_file(mesh: PolygonMesh, keeps: Keeps, path: Path) -> Encoded:
     return Encoded(packed(json, made.chunk, binary=binary), tuple(losses), tuple(notes))
 
 
-def _split(mesh: PolygonMesh) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.int64]]:
+def _split(mesh: PolygonMesh) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.integer[Any]]]:
     """The vertex that each of the file's is made from, a corner where it is used or -1, and (t, 3) triangles.
 
     A vertex keeps its place; another is added at the end for each further combination of coordinates and normals
     that its corners have.
     """
     flat, count = mesh.faces.flat.astype(np.int64), len(mesh.points)
-    columns = [flat, *(each.indices.astype(np.int64) for each in (mesh.uvs, mesh.normals) if each is not None)]
-    rows, first, which = np.unique(np.stack(columns, axis=1), axis=0, return_index=True, return_inverse=True)
-    leads = np.ones(len(rows), bool)
-    leads[1:] = rows[1:, 0] != rows[:-1, 0]
-    place = np.where(leads, rows[:, 0], 0)
+    corner_of = np.full(count, -1)
+    corner_of[flat] = np.arange(len(flat))
+    columns = [each.indices for each in (mesh.uvs, mesh.normals) if each is not None]
+    if all((column == column[corner_of[flat]]).all() for column in columns):
+        return np.arange(count), corner_of, mesh.triangles
+    key = flat
+    for column in columns:
+        key = key * (int(column.max()) + 2) + column + 1
+    _, first, which = np.unique(key, return_index=True, return_inverse=True)
+    vertex = flat[first]
+    leads = np.diff(vertex, prepend=-1) != 0
+    place = vertex.copy()
     place[~leads] = count + np.arange(int((~leads).sum()))
-    source = np.concatenate([np.arange(count), rows[~leads, 0]])
+    source = np.concatenate([np.arange(count), vertex[~leads]])
     corner_of = np.full(len(source), -1)
     corner_of[place] = first
-    return source, corner_of, place[which.reshape(-1)][mesh.triangle_corners]
+    return source, corner_of, place[which][mesh.triangle_corners]
 
 
 def _attributes(
