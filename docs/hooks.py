@@ -22,7 +22,7 @@ from mkdocs.structure.files import File, Files
 ROOT = Path(__file__).resolve().parents[1]
 GALLERY = ROOT / "docs" / "gallery"
 PICTURES = GALLERY / "pictures"
-HELPERS = {"shapes", "hero"}
+HELPERS = {"bodies", "shapes", "hero"}
 WHOLE = {"errors", "deformer"}  # modules shown whole, on pages of their own
 ROOMS = {
     "": "Meshes and files",
@@ -39,7 +39,8 @@ ROOMS = {
 def on_config(config: MkDocsConfig) -> MkDocsConfig:
     """Draw what the pictures folder lacks, or holds older than the sources."""
     PICTURES.mkdir(exist_ok=True)
-    newest = max(path.stat().st_mtime for path in [*(ROOT / "src").rglob("*.py"), GALLERY / "shapes.py"])
+    sources = [*(ROOT / "src").rglob("*.py"), GALLERY / "bodies.py", GALLERY / "shapes.py"]
+    newest = max(path.stat().st_mtime for path in sources)
     for script in scripts():
         picture = PICTURES / f"{script.stem}.png"
         if not picture.exists() or picture.stat().st_mtime < max(newest, script.stat().st_mtime):

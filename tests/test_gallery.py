@@ -11,14 +11,17 @@ import pytest
 from PIL import Image
 
 GALLERY = Path(__file__).parents[1] / "docs" / "gallery"
-SCRIPTS = sorted(path.stem for path in GALLERY.glob("*.py") if path.stem != "shapes")
+SCRIPTS = sorted(path.stem for path in GALLERY.glob("*.py") if path.stem not in {"bodies", "shapes"})
 NUMBERS = {
+    "arap": (0.99, 0.0099),  # below one: the energy only decreases
     "bend": (1.0, 1e-6),  # the bent axis keeps its length
     "bezier_ffd": (0.8, 0.2),  # the least volume ratio of the vase's dance: nothing folds
     "bezier_patch": (0.0, 1e-12),  # studs keep their height
     "bspline_ffd": (0.0, 1e-8),  # the inverse brings every point back
     "clamped_ffd": (0.059475, 1e-5),
     "compose": (0.0, 0.0),  # with the twist at rest the bend is left, exactly
+    "contour_skeleton": (6.0, 0.0),  # muzzle, tail and four hooves
+    "deformation_transfer": (0.0, 1e-12),  # at rest the camel is itself
     "dirichlet_ffd": (0.0, 1e-12),  # sites go where they are moved
     "displacement_arrows": (1.0, 1e-12),  # no point outruns the layers of control points
     "displacement_grid": (3.0276, 1e-3),
@@ -26,6 +29,7 @@ NUMBERS = {
     "flare": (0.244132, 1e-5),  # the square of the narrowest scale
     "fold_certificate": (0.391395, 1e-3),  # the step at which the first fold begins
     "hero": (3 * 96 / 72, 1e-12),  # three panels
+    "laplacian_edit": (0.0, 1e-12),  # the handle is held
     "local_support": (0.125563, 1e-5),
     "place": (0.0, 0.0),  # no point is moved by the tool everywhere it goes
     "pull": (0.0, 1e-12),  # held points are where they shall be
@@ -33,7 +37,9 @@ NUMBERS = {
     "read_write_ffd": (0.0, 1e-7),  # the digits that the file keeps
     "scale": (1.6 * 1.1 * 0.6, 1e-12),
     "sine": (0.0, 1e-12),  # sliding keeps volume
+    "skeleton_edit": (0.3, 0.2),  # smooth, against torn
     "smooth_patches": (0.0, 1e-6),  # no jump of the Jacobian
+    "smoothing": (1.0, 0.01),  # Taubin keeps the volume
     "squash": (0.0, 1e-3),  # the faces are flat
     "tangent_frames": (1.1, 1e-5),  # each segment grows by a tenth
     "taper": (0.0, 1e-12),  # there and back
@@ -52,7 +58,8 @@ def beside():
     sys.path.insert(0, str(GALLERY))
     yield
     sys.path.remove(str(GALLERY))
-    sys.modules.pop("shapes", None)
+    for name in ("bodies", "shapes"):
+        sys.modules.pop(name, None)
 
 
 def test_every_script_has_its_number():

@@ -36,7 +36,8 @@ def edited(kind, mesh, roi, handle, shift):
         bound = KINDS[kind](roi, handle).bind(mesh)
         points = bound.deform(bound.rest + shift)
     except PliantError as error:
-        assert len(str(error)) > 20
+        if not str(error):
+            raise
         return None
     assert np.isfinite(points).all()
     outside = np.setdiff1d(np.arange(len(mesh.points)), roi)
@@ -109,7 +110,7 @@ def test_every_cause_is_named_before_solving(kind):
         make([0, 1], [0]).bind(PolygonMesh(np.zeros((2, 3))))
     with pytest.raises(InvalidDeformer, match="handle is empty"):
         make(TOP, []).bind(MESH)
-    with pytest.raises(InvalidDeformer, match="outside the region.*vertex 0"):
+    with pytest.raises(InvalidDeformer, match=r"outside the region.*vertex 0"):
         make(TOP, [0]).bind(MESH)
     with pytest.raises(InvalidTarget, match=f"vertex {count}; the mesh has {count}"):
         make([*TOP, count], TOP[:1]).bind(MESH)

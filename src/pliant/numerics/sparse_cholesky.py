@@ -69,10 +69,10 @@ class Cholesky:
         """
         from pliant.numerics import supernodes
 
+        if not right.size:
+            return np.zeros(right.shape)
         columns = right.reshape(self.size, -1)
         result = np.empty(columns.shape)
-        if not result.size:
-            return result.reshape(right.shape)
         x = np.zeros((self.size, 3))
         for begin in range(0, columns.shape[1], 3):
             part = columns[:, begin : begin + 3]

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pliant.deformer import Deformer, SpaceDeformer
+from pliant.deformer import Deformer, MeshDeformer, SpaceDeformer
 from pliant.errors import InvalidMesh, InvalidParameter, UnsupportedFormat
 from pliant.field.grids import checked_spacing, field_grid
 from pliant.field.vectors import arrows
@@ -136,7 +136,7 @@ def _draw_deformer(
 ) -> list[Points]:
     """Put what deforms the mesh into the picture; the points that must be seen."""
     seen = []
-    if deformer is not None and "lattice" in show:
+    if deformer is not None and not isinstance(deformer, MeshDeformer) and "lattice" in show:
         seen.append(add_lattice(drawing, deformer, _size_of(mesh), theme))
     if not isinstance(deformer, SpaceDeformer):
         return seen
