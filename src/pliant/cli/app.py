@@ -14,6 +14,7 @@ from pliant.cli.demo import demo
 from pliant.cli.edit import edit
 from pliant.cli.exits import EXPLAINED
 from pliant.cli.info import info
+from pliant.cli.model import app as model
 from pliant.cli.render import render
 from pliant.cli.skeleton import skeleton
 from pliant.cli.smooth import smooth
@@ -29,6 +30,8 @@ app = typer.Typer(
 )
 for command in (deform, warp, edit, skeleton, smooth, transfer, info, check, convert, render, demo):
     app.command(cls=DeformingCommand if command in (deform, render) else None)(command)
+
+app.add_typer(model, name="model")
 
 
 def _version(wanted: bool) -> None:

@@ -52,7 +52,9 @@ class Target:
         if self._open.any():
             good &= ~((found.weights * ~self._open[corners]).sum(axis=1) < 1e-6)
         if normals is not None:
-            good &= np.einsum("mi,mi->m", normals, there) >= self._least
+            smooth = np.einsum("mc,mcd->md", found.weights, self._smooth[corners])  # at a corner no one side counts
+            length = np.linalg.norm(smooth, axis=1)
+            good &= np.einsum("mi,mi->m", normals, smooth) >= self._least * length - 1e-12
         return places, there, good
 
     def _query(self, points: Floats, *, exact: bool = False) -> tuple[Floats, Closest | None]:
@@ -74,6 +76,10 @@ class Target:
     @cached_property
     def _normals(self) -> Floats:
         return triangle_normals(self.mesh.points, self.mesh.triangles)
+
+    @cached_property
+    def _smooth(self) -> Floats:
+        return vertex_normals(self.mesh.points, self.mesh.triangles)
 
     @cached_property
     def _open(self) -> Booleans:
