@@ -11,7 +11,7 @@ from pliant.errors import UnreadableFile, UnsupportedFormat
 from pliant.io.displacement_images import NOTE
 from pliant.io.file_facts import FileFacts
 from pliant.io.files import write_bytes
-from pliant.io.report import LossReport
+from pliant.io.report import LossReport, refuse_losses
 from pliant.io.transform_options import ReadOptions
 from pliant.io.words import numbers, spaced
 from pliant.space.affine import Affine
@@ -38,5 +38,6 @@ def write(deformer: Deformer, path: Path, *, strict: bool) -> LossReport:
     """
     if not isinstance(deformer, Affine):
         raise UnsupportedFormat(f"{path}: the file holds an affine map, not a {type(deformer).__name__}")
+    refuse_losses((), path, strict=strict)  # an affine map loses nothing
     write_bytes(path, b"".join(spaced(row) + b"\n" for row in deformer.matrix))
     return LossReport(path, NAME, (), () if deformer.direction == "pull-back" else (NOTE,))
