@@ -49,7 +49,7 @@ def turning_vectors(before: Floats, after: Floats) -> Floats:
     size = np.sqrt((before**2).sum(axis=1)) * np.sqrt((after**2).sum(axis=1))
     cosine = (before * after).sum(axis=1)
     sine = np.sqrt((cross**2).sum(axis=1))
-    flat = np.abs(sine) < 1e-7 * np.abs(size)  # half the angle has the tangent sine / (size + cosine)
+    flat = np.abs(sine) <= 1e-7 * np.abs(size)  # half the angle has the tangent sine / (size + cosine)
     nothing = np.abs(size + cosine) <= 1e-14 * np.abs(size)
     safe = np.where(nothing, 1.0, size + cosine)
     angle_by_sine = 2 * np.arctan(np.where(flat, 0.0, sine) / safe) / np.where(flat, 1.0, sine)
