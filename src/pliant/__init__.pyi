@@ -50,6 +50,13 @@ from .shape.pca import learn_model as learn_model
 from .shape.procrustes import align as align
 from .shape.procrustes import generalized_procrustes as generalized_procrustes
 from .shape.registration import Fit as Fit
+from .shape.closest_point_chain import ClosestPointDensity as ClosestPointDensity
+from .shape.diagnostics import effective_sample_size as effective_sample_size
+from .shape.diagnostics import r_hat as r_hat
+from .shape.sampling import Mixture as Mixture
+from .shape.sampling import NormalProposal as NormalProposal
+from .shape.sampling import RandomWalk as RandomWalk
+from .shape.sampling import metropolis_hastings as metropolis_hastings
 from .space.affine import Affine as Affine
 from .space.bend import Bend as Bend
 from .space.bezier_ffd import BezierFFD as BezierFFD
