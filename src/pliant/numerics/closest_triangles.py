@@ -50,7 +50,8 @@ def unit_normals(points: Floats, triangles: NDArray[np.int32]) -> Floats:
     corners = points[triangles]
     normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     length = np.linalg.norm(normals, axis=1, keepdims=True)
-    return np.divide(normals, length, out=np.zeros_like(normals), where=length > 0)
+    result: Floats = np.divide(normals, length, out=np.zeros_like(normals), where=length > 0)
+    return result
 
 
 def project(queries: Floats, corners: Floats) -> Floats:

@@ -15,6 +15,7 @@ from scipy.sparse import csc_array
 
 from pliant.errors import SingularSystem
 from pliant.numerics.fill_reducing import nested_dissection
+from pliant.numerics.one_thread import one_blas_thread
 
 Floats = NDArray[np.float64]
 
@@ -92,12 +93,13 @@ class Cholesky:
         if not np.isfinite(ordered.data).all():
             raise SingularSystem("the matrix to factor holds numbers that are not finite")
         try:
-            factors = splu(
-                ordered,
-                permc_spec="MMD_AT_PLUS_A" if order is None else "NATURAL",
-                diag_pivot_thresh=0.0,
-                options={"SymmetricMode": True},
-            )
+            with one_blas_thread():
+                factors = splu(
+                    ordered,
+                    permc_spec="MMD_AT_PLUS_A" if order is None else "NATURAL",
+                    diag_pivot_thresh=0.0,
+                    options={"SymmetricMode": True},
+                )
         except RuntimeError as error:
             raise SingularSystem(f"the matrix of {self.size:,} unknowns is singular: constrain more of them") from error
         pivots = np.asarray(factors.U.diagonal(), np.float64)
