@@ -1,7 +1,7 @@
 """What a target says of a model's coefficients: a log density of closest points, and proposals towards them.
 
-The proposal is the posterior of the model given the closest points of the present shape (Madsen et al. 2020, section 4).
-Both directions of its transition density are those of this construction, so chains converge to the density asked.
+The proposal is the posterior of the model given the closest points of the present shape (Madsen et al. 2020, sec. 4).
+Both directions of its transition density are those of this construction: chains converge to the density asked for.
 """
 
 from __future__ import annotations
