@@ -15,6 +15,7 @@ from scipy.linalg import eigh
 from scipy.sparse import csc_array, diags_array
 
 from pliant.errors import NotConverged
+from pliant.numerics.one_thread import one_blas_thread
 from pliant.numerics.sparse_cholesky import Cholesky
 
 Floats = NDArray[np.float64]
@@ -50,6 +51,11 @@ def lowest_eigenpairs(stiffness: Any, mass: Floats, count: int, *, tolerance: fl
     NotConverged
         The residual stays above the tolerance.
     """
+    with one_blas_thread():
+        return _lowest(stiffness, mass, count, tolerance)
+
+
+def _lowest(stiffness: Any, mass: Floats, count: int, tolerance: float) -> tuple[Floats, Floats]:
     root = np.sqrt(mass)
     scaled = csc_array(diags_array(1 / root) @ stiffness @ diags_array(1 / root))
     size = len(mass)
