@@ -57,9 +57,9 @@ def bspline_comparisons() -> list[Comparison]:
             {"pliant": lambda: bound.deform(moves[1], out=out), "VTK": vtk_again},
         ),
         Comparison(
-            "the same, bound: one control point moved, five moves in a row",
+            "the same, bound: one control point moved, twenty moves in a row",
             {"pliant, drag": move_one, "pliant, all anew": lambda: bound.deform(moves[1], out=out), "VTK": vtk_again},
-            repeat=5,
+            repeat=20,
         ),
     ]
 

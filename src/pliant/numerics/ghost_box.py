@@ -95,12 +95,16 @@ class GhostBox:
 
     def weights(self, points: Floats) -> csr_array:
         """(n, k) how displacements of the sites move (n, 3) points."""
-        inside, coordinates, fade, _ = self._sampled(points, gradients=False)
+        local, count = self.local(points), len(self.sites)
+        if (np.abs(local) <= FADE * self.half).all():  # the usual case, and much the fastest
+            found = self.neighbors.at(local, limit=count)
+            return csr_array((found.values, found.sites, found.starts), shape=(len(points), count))
+        inside, coordinates, fade, _ = self._sampled(local, gradients=False)
         return self._matrix(len(points), inside, coordinates, coordinates.values * fade[_rows(coordinates)])
 
     def smooth_weights(self, points: Floats) -> csr_array:
         """(n, 4 k) how the sites' displacements (k), and then their gradients (3 k), move (n, 3) points."""
-        inside, coordinates, fade, _ = self._sampled(points, gradients=False)
+        inside, coordinates, fade, _ = self._sampled(self.local(points), gradients=False)
         values, slopes = FarinForm(coordinates, self.everyone).weights()
         fading = fade[_rows(coordinates)]
         of_gradients = self._matrix(len(points), inside, coordinates, slopes * fading[:, None])
@@ -110,7 +114,7 @@ class GhostBox:
 
     def slope(self, points: Floats, displacements: Floats, *, smooth: bool) -> Floats:
         """(n, 3, 3) the derivative of the interpolated (k, 3) displacements; at a site the fitted gradient."""
-        inside, coordinates, fade, d_fade = self._sampled(points, gradients=True)
+        inside, coordinates, fade, d_fade = self._sampled(self.local(points), gradients=True)
         rows, sites = _rows(coordinates), coordinates.sites
         moves = np.vstack([displacements, np.zeros((8, 3))])
         slopes = np.vstack([self.fit @ displacements, np.zeros((24, 3))]).reshape(-1, 3, 3).transpose(0, 2, 1)
@@ -136,9 +140,8 @@ class GhostBox:
         result[inside] = (fade[:, None, None] * d_total + total[:, :, None] * d_fade[:, None, :]) / self.scale
         return result
 
-    def _sampled(self, points: Floats, *, gradients: bool) -> tuple[NDArray[np.int64], Coordinates, Floats, Floats]:
+    def _sampled(self, local: Floats, *, gradients: bool) -> tuple[NDArray[np.int64], Coordinates, Floats, Floats]:
         """Which points are in the box, their coordinates, and the factor there with its gradient."""
-        local = self.local(points)
         inside = np.flatnonzero((np.abs(local) < self.half).all(axis=1))
         local = local[inside]
         t = np.clip((np.abs(local) / self.half - FADE) / (1 - FADE), 0, 1)

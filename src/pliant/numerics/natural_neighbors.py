@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pliant.numerics.chunks import for_chunks
-from pliant.numerics.voronoi import VoronoiCells
+from pliant.numerics.voronoi import CellArrays, VoronoiCells
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -58,6 +58,45 @@ class SeedGrid(NamedTuple):
     sites: NDArray[np.int32]
 
 
+class Workspace(NamedTuple):
+    """What a kernel needs to remember about the point at hand, for m sites, f facets and p places of corners.
+
+    Parameters
+    ----------
+    found, slots, sums
+        (m,) the cells that lose something; (m,) where each site is among them, or -1; (8 m,) for each of them its
+        volume, the area of the cut, its moment (3,) and the moment of its outline (3,).
+    asked, met, waiting
+        (f,) and (p,) the last search that came by; (p,) corners to go on from.
+    signed, ends
+        Room for a number a corner of a facet, and for six.
+    """
+
+    found: NDArray[np.int32]
+    slots: NDArray[np.int32]
+    sums: Floats
+    asked: Integers
+    met: Integers
+    waiting: NDArray[np.int32]
+    signed: Floats
+    ends: Floats
+
+    @classmethod
+    def of(cls, cells: CellArrays) -> Workspace:
+        """An empty one."""
+        count, facets, places = cells.number, len(cells.owners), len(cells.meeting_starts) - 1
+        return cls(
+            np.empty(count, np.int32),
+            np.full(count, -1, np.int32),
+            np.empty(8 * count),
+            np.full(facets, -1, np.int64),
+            np.full(places, -1, np.int64),
+            np.empty(places, np.int32),
+            np.empty(int(np.diff(cells.corner_starts).max())),
+            np.empty(6),
+        )
+
+
 @dataclass(frozen=True, eq=False)
 class NaturalNeighbors:
     """Sites, ready to be asked for the coordinates of points.
@@ -77,13 +116,24 @@ class NaturalNeighbors:
     kind: Kind
     on_site: float
 
-    def at(self, points: Floats, *, gradients: bool = False) -> Coordinates:
-        """The coordinates of (n, 3) points, which lie inside the cube of the cells."""
+    def at(self, points: Floats, *, gradients: bool = False, limit: int | None = None) -> Coordinates:
+        """The coordinates of (n, 3) points, which lie inside the cube of the cells.
+
+        Parameters
+        ----------
+        points
+            (n, 3) positions.
+        gradients
+            Whether gradients are wanted too.
+        limit
+            Sites from here on are left out of the rows; None = none is.
+        """
         from pliant.numerics import sibson
 
         cells, flat = self.cells, np.ascontiguousarray(points).reshape(-1)
         kind = sibson.SIBSON if self.kind == "sibson" else sibson.LAPLACE
         arrays, rounding = cells.arrays, 1e-15 * float(np.abs(cells.corners).max())  # of cuts as large as the cube
+        end = len(cells.sites) if limit is None else limit
         parts: dict[int, tuple[Integers, NDArray[np.int32], Floats, Floats]] = {}
 
         def work(start: int, stop: int) -> None:
@@ -92,7 +142,7 @@ class NaturalNeighbors:
                 ends, columns, values = np.empty(stop - start, np.int64), np.empty(room, np.int32), np.empty(room)
                 slopes = np.empty(3 * room if gradients else 0)
                 done = sibson.coordinates(
-                    flat, start, stop, arrays, self._seeds, kind, self.on_site, rounding,
+                    flat, start, stop, arrays, self._seeds, Workspace.of(arrays), kind, self.on_site, rounding, end,
                     ends, columns, values, slopes,
                 )  # fmt: skip
                 if done == stop - start:

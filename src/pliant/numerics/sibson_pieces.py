@@ -9,11 +9,10 @@ from __future__ import annotations
 import numpy as np
 
 from pliant.numerics.compiling import inlined
-from pliant.numerics.lanes import get, put
 
 
 @inlined
-def share(facet, px, py, pz, cells, rounding, outlines, signed, ends, size, found, slots, sums):
+def share(facet, px, py, pz, cells, rounding, outlines, size, room):
     """Add what a facet gives to the cells on both sides, which join ``found``.
 
     Parameters
@@ -23,54 +22,50 @@ def share(facet, px, py, pz, cells, rounding, outlines, signed, ends, size, foun
     px, py, pz
         The point.
     cells
-        As in :class:`pliant.numerics.voronoi.CellArrays`.
+        As in :class:`pliant.numerics.voronoi.CellArrays`, as pointers.
     rounding
         Distance within which a corner lies on the cut.
     outlines
         Whether areas of cuts and gradients are wanted too.
-    signed, ends
-        Room for a number a corner, and for six; ``signed`` then says how much nearer each corner is to the point
-        than to the site.
-    size, found, slots, sums
-        How many cells there are; which; (m,) where each site is among them, or -1; and their sums.
+    size
+        How many cells there are.
+    room
+        As in :class:`pliant.numerics.natural_neighbors.Workspace`, as pointers. ``signed`` then says how much nearer
+        each corner is to the point than to the site.
 
     Returns
     -------
     size, touched
         How many cells there are now, and whether the facet has something nearer to the point.
     """
-    own, other = get(cells.owners, facet), get(cells.others, facet)
-    dx, dy, dz = (
-        px - get(cells.sites, 3 * own),
-        py - get(cells.sites, 3 * own + 1),
-        pz - get(cells.sites, 3 * own + 2),
-    )
-    area, crossings = _kept(facet, dx, dy, dz, cells, rounding, signed, ends)
+    own, other = cells.owners[facet], cells.others[facet]
+    dx, dy, dz = px - cells.sites[3 * own], py - cells.sites[3 * own + 1], pz - cells.sites[3 * own + 2]
+    area, crossings = _kept(facet, dx, dy, dz, cells, rounding, room.signed, room.ends)
     if area < 0.0:
         return size, False
-    size = _join(own, size, found, slots, sums)
-    nx, ny, nz = get(cells.normals, 3 * facet), get(cells.normals, 3 * facet + 1), get(cells.normals, 3 * facet + 2)
-    offset = get(cells.offsets, facet)
+    size = _join(own, size, room)
+    nx, ny, nz = cells.normals[3 * facet], cells.normals[3 * facet + 1], cells.normals[3 * facet + 2]
+    offset = cells.offsets[facet]
     half = 0.5 * (nx * dx + ny * dy + nz * dz)
-    sums[slots[own], 0] += (offset - half) * area
+    room.sums[8 * room.slots[own]] += (offset - half) * area
     if crossings and outlines:
-        _outline(sums[slots[own]], dx, dy, dz, nx, ny, nz, 0.0, 1.0, ends)
+        _outline(room.sums, 8 * room.slots[own], dx, dy, dz, nx, ny, nz, 0.0, 1.0, room.ends)
     if other >= 0:
-        size = _join(other, size, found, slots, sums)
-        sums[slots[other], 0] += half * area
+        size = _join(other, size, room)
+        room.sums[8 * room.slots[other]] += half * area
         if crossings and outlines:
-            _outline(sums[slots[other]], dx, dy, dz, nx, ny, nz, 2.0 * offset, -1.0, ends)
+            _outline(room.sums, 8 * room.slots[other], dx, dy, dz, nx, ny, nz, 2.0 * offset, -1.0, room.ends)
     return size, True
 
 
 @inlined
-def _join(site, size, found, slots, sums):
+def _join(site, size, room):
     """Put a cell among those found; how many those are then."""
-    if get(slots, site) >= 0:
+    if room.slots[site] >= 0:
         return size
-    slots[site], found[size] = size, site
+    room.slots[site], room.found[size] = size, site
     for k in range(8):
-        sums[size, k] = 0.0
+        room.sums[8 * size + k] = 0.0
     return size + 1
 
 
@@ -83,30 +78,32 @@ def _kept(facet, dx, dy, dz, cells, rounding, signed, ends):
     base, size = cells.corner_starts[facet], cells.corner_starts[facet + 1] - cells.corner_starts[facet]
     shift = 0.5 * (dx * dx + dy * dy + dz * dz)
     least = rounding * np.sqrt(2.0 * shift)
-    touched = False
+    nearer = 0
     for k in range(size):
         n = 3 * (base + k)
-        s = get(cells.corners, n) * dx + get(cells.corners, n + 1) * dy + get(cells.corners, n + 2) * dz - shift
-        put(signed, k, s if abs(s) > least else 0.0)
-        touched |= s > least
-    if not touched:
+        s = cells.corners[n] * dx + cells.corners[n + 1] * dy + cells.corners[n + 2] * dz - shift
+        signed[k] = s if abs(s) > least else 0.0
+        nearer += s > least
+    if nearer == 0:
         return -1.0, 0
+    if nearer == size:
+        return cells.areas[facet], 0
     crossings, empty = 0, True
     x0 = y0 = z0 = x1 = y1 = z1 = 0.0  # the first corner kept, and the last
     cx = cy = cz = 0.0  # twice the area vector
     last = size - 1
-    before = get(signed, last)
+    before = signed[last]
     for k in range(size):
-        s, n = get(signed, k), 3 * (base + k)
-        vx, vy, vz = get(cells.corners, n), get(cells.corners, n + 1), get(cells.corners, n + 2)
+        s, n = signed[k], 3 * (base + k)
+        vx, vy, vz = cells.corners[n], cells.corners[n + 1], cells.corners[n + 2]
         if (s > 0.0) != (before > 0.0):
             m, t = 3 * (base + last), before / (before - s)
-            wx, wy, wz = get(cells.corners, m), get(cells.corners, m + 1), get(cells.corners, m + 2)
+            wx, wy, wz = cells.corners[m], cells.corners[m + 1], cells.corners[m + 2]
             ux, uy, uz = wx + t * (vx - wx), wy + t * (vy - wy), wz + t * (vz - wz)
             side = 0 if before > 0.0 else 3
-            put(ends, side, ux)
-            put(ends, side + 1, uy)
-            put(ends, side + 2, uz)
+            ends[side] = ux
+            ends[side + 1] = uy
+            ends[side + 2] = uz
             crossings += 1
             if empty:
                 x0, y0, z0, empty = ux, uy, uz, False
@@ -124,12 +121,12 @@ def _kept(facet, dx, dy, dz, cells, rounding, signed, ends):
                 cz += (x1 - x0) * (vy - y0) - (y1 - y0) * (vx - x0)
             x1, y1, z1 = vx, vy, vz
         before, last = s, k
-    nx, ny, nz = get(cells.normals, 3 * facet), get(cells.normals, 3 * facet + 1), get(cells.normals, 3 * facet + 2)
+    nx, ny, nz = cells.normals[3 * facet], cells.normals[3 * facet + 1], cells.normals[3 * facet + 2]
     return max(0.5 * (cx * nx + cy * ny + cz * nz), 0.0), crossings
 
 
 @inlined
-def _outline(sums, dx, dy, dz, nx, ny, nz, apart, sign, ends):
+def _outline(sums, at, dx, dy, dz, nx, ny, nz, apart, sign, ends):
     """Add an edge of the cut's outline to the sums of the cut's area, moment and outline.
 
     The facet's normal is seen from its owner, ``d`` and ``ends`` are relative to it; the cell whose sums these are
@@ -144,13 +141,13 @@ def _outline(sums, dx, dy, dz, nx, ny, nz, apart, sign, ends):
     ox, oy, oz, wx, wy, wz = ex - ax, ey - ay, ez - az, bx - ax, by - ay, bz - az
     area = dx * (oy * wz - oz * wy) + dy * (oz * wx - ox * wz) + dz * (ox * wy - oy * wx)
     area *= 0.5 * sign / distance
-    sums[1] += area
-    sums[2] += area * (ax + ex + bx) / 3.0
-    sums[3] += area * (ay + ey + by) / 3.0
-    sums[4] += area * (az + ez + bz) / 3.0
+    sums[at + 1] += area
+    sums[at + 2] += area * (ax + ex + bx) / 3.0
+    sums[at + 3] += area * (ay + ey + by) / 3.0
+    sums[at + 4] += area * (az + ez + bz) / 3.0
     along = sign * (nx * dx + ny * dy + nz * dz) / distance
     length = np.sqrt((bx - ex) ** 2 + (by - ey) ** 2 + (bz - ez) ** 2)
     share = along / np.sqrt(max(1.0 - along * along, 1e-30)) * length / distance
-    sums[5] += share * (0.5 * (ex + bx) - dx)
-    sums[6] += share * (0.5 * (ey + by) - dy)
-    sums[7] += share * (0.5 * (ez + bz) - dz)
+    sums[at + 5] += share * (0.5 * (ex + bx) - dx)
+    sums[at + 6] += share * (0.5 * (ey + by) - dy)
+    sums[at + 7] += share * (0.5 * (ez + bz) - dz)

@@ -25,12 +25,13 @@ NEARER = 1e-13  # by how much another site's half-space must cut a corner off, r
 
 
 class CellArrays(NamedTuple):
-    """Cells as kernels take them: positions, normals and corners flat; the rest as in :class:`VoronoiCells`.
+    """Cells as kernels take them: positions, normals and corners flat; (f,) areas; the rest as in :class:`VoronoiCells`.
 
     ``meetings`` (c,) says which corners are the same place; ``meeting_facets`` are the facets that have a corner in
-    it, from ``meeting_starts`` of the place on.
+    it, from ``meeting_starts`` of the place on. ``number`` is that of the cells.
     """
 
+    number: int
     sites: Floats
     starts: Integers
     facets: Integers
@@ -38,6 +39,7 @@ class CellArrays(NamedTuple):
     others: NDArray[np.int32]
     normals: Floats
     offsets: Floats
+    areas: Floats
     corner_starts: Integers
     corners: Floats
     meetings: NDArray[np.int32]
@@ -88,12 +90,25 @@ class VoronoiCells:
         graph = coo_array((np.ones(len(pairs), bool), pairs.T), shape=(len(places), len(places)))
         count, meetings = connected_components(graph, directed=False)
         facets = np.repeat(np.arange(len(sizes), dtype=np.int32), sizes)
+        meetings = meetings.astype(np.int32)
         order = np.argsort(meetings, kind="stable")
         return CellArrays(
-            self.sites.reshape(-1), self.starts, self.facets, self.owners, self.others, self.normals.reshape(-1),
-            self.offsets, self.corner_starts, self.corners.reshape(-1), meetings.astype(np.int32),
+            len(self.sites), self.sites.reshape(-1), self.starts, self.facets, self.owners, self.others,
+            self.normals.reshape(-1), self.offsets, self._areas, self.corner_starts, self.corners.reshape(-1), meetings,
             np.searchsorted(meetings[order], np.arange(count + 1)), facets[order],
         )  # fmt: skip
+
+    @property
+    def _areas(self) -> Floats:
+        """(f,) the facets' areas: fans of triangles about their first corners."""
+        sizes = np.diff(self.corner_starts)
+        last = np.zeros(len(self.corners), bool)
+        last[self.corner_starts[1:] - 1] = True
+        following = np.arange(1, len(last) + 1)
+        following[last] = self.corner_starts[:-1]
+        apart = self.corners - np.repeat(self.corners[self.corner_starts[:-1]], sizes, axis=0)
+        fans = np.add.reduceat(np.cross(apart, apart[following]), self.corner_starts[:-1])
+        return np.asarray(np.einsum("ij,ij->i", fans, self.normals) / 2)
 
     @classmethod
     def of(cls, sites: Floats, wall: float, always: Integers) -> VoronoiCells:
