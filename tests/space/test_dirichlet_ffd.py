@@ -105,7 +105,7 @@ def test_a_search_that_goes_astray_is_noticed_and_repeated(random):
     cells = box.neighbors.cells
     facets = np.repeat(np.arange(len(cells.owners), dtype=np.int32), np.diff(cells.corner_starts))
     alone = np.arange(len(facets))
-    cells.__dict__["arrays"] = cells.arrays._replace(
+    box.neighbors.__dict__["_arrays"] = box.neighbors._arrays._replace(
         meetings=alone.astype(np.int32), meeting_starts=np.append(alone, len(alone)), meeting_facets=facets
     )
     found = box.neighbors.at(points, gradients=True)

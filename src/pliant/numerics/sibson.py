@@ -10,27 +10,24 @@ from __future__ import annotations
 
 import numpy as np
 
+from pliant.numerics.cell_arrays import CellArrays
 from pliant.numerics.compiling import inlined, kernel
 from pliant.numerics.natural_neighbors import Workspace
 from pliant.numerics.pointers import pointer
 from pliant.numerics.sibson_pieces import share
-from pliant.numerics.voronoi import CellArrays
-
-SIBSON, LAPLACE = 0, 1
+from pliant.numerics.sibson_rows import LAPLACE, reproduced, weigh, write
 
 
 @kernel
-def coordinates(
-    points, first, stop, cells, seeds, room, kind, on_site, rounding, limit, row_ends, columns, values, slopes
-):
-    """Coordinates of the points ``first:stop`` with respect to the sites.
+def coordinates(points, order, cells, seeds, room, kind, on_site, rounding, limit, row_ends, columns, values, slopes):
+    """Coordinates of some points with respect to the sites.
 
     Parameters
     ----------
-    points
-        (3 n,) positions.
+    points, order
+        (3 n,) positions, and (k,) which of them to take, one after another: best neighbours together.
     cells, seeds, room
-        As in :class:`pliant.numerics.voronoi.CellArrays`, and :class:`SeedGrid` and :class:`Workspace` of
+        As in :class:`pliant.numerics.cell_arrays.CellArrays`, and :class:`SeedGrid` and :class:`Workspace` of
         :mod:`pliant.numerics.natural_neighbors`.
     kind
         SIBSON or LAPLACE.
@@ -41,7 +38,7 @@ def coordinates(
     limit
         Sites from here on are left out of the rows.
     row_ends, columns, values
-        (stop - first,) where each point's row ends; the sites and their coordinates.
+        (k,) where each point's row ends; the sites and their coordinates.
     slopes
         (3 per value) gradients of the coordinates; empty = not wanted.
 
@@ -54,26 +51,27 @@ def coordinates(
     differentiate = len(slopes) > 0
     outlines = differentiate or kind == LAPLACE
     filled = 0
-    for row in range(first, stop):
-        px, py, pz = points[3 * row], points[3 * row + 1], points[3 * row + 2]
+    for row in range(len(order)):
+        n = 3 * order[row]
+        px, py, pz = points[n], points[n + 1], points[n + 2]
         start = _walk(px, py, pz, _seed(px, py, pz, seeds), cells)
         if filled + cells.number > len(columns):
-            return row - first
+            return row
         if _distance(px, py, pz, cells.sites, start) <= on_site:
             if start < limit:
                 columns[filled], values[filled] = start, 1.0
                 slopes[3 * filled : 3 * filled + 3] = 0.0
                 filled += 1
-            row_ends[row - first] = filled
+            row_ends[row] = filled
             continue
         for attempt in range(2):
             size = _search(px, py, pz, start, 2 * row + attempt, attempt == 0, cells, rounding, outlines, room)
-            total = _weigh(px, py, pz, size, room, cells.sites, kind, outlines)
-            if _reproduced(px, py, pz, size, room, total, cells.sites):
+            total = weigh(px, py, pz, size, room, cells.sites, kind, outlines)
+            if reproduced(px, py, pz, size, room, total, cells.sites):
                 break
-        filled = _write(size, room, total, limit, differentiate, filled, columns, values, slopes)
-        row_ends[row - first] = filled
-    return stop - first
+        filled = write(size, room, total, limit, differentiate, filled, columns, values, slopes)
+        row_ends[row] = filled
+    return len(order)
 
 
 @inlined
@@ -190,63 +188,3 @@ def _walk(px, py, pz, start, cells):
 @inlined
 def _distance(px, py, pz, sites, site):
     return np.sqrt((px - sites[3 * site]) ** 2 + (py - sites[3 * site + 1]) ** 2 + (pz - sites[3 * site + 2]) ** 2)
-
-
-@inlined
-def _weigh(px, py, pz, size, room, sites, kind, outlines):
-    """From sums to weights, at 0, and their gradients, at 1 to 3; the sum of the weights.
-
-    A volume grows by the cut's area times the cut's motion; the cut's area grows at its outline.
-    """
-    total = 0.0
-    for at in range(size):
-        site = room.found[at]
-        room.slots[site] = -1
-        weight = max(room.sums[8 * at], 0.0) / 3.0
-        if outlines:
-            dx, dy, dz = px - sites[3 * site], py - sites[3 * site + 1], pz - sites[3 * site + 2]
-            distance, area = np.sqrt(dx * dx + dy * dy + dz * dz), room.sums[8 * at + 1]
-            if kind == SIBSON:
-                room.sums[8 * at + 1] = (room.sums[8 * at + 2] - area * dx) / distance
-                room.sums[8 * at + 2] = (room.sums[8 * at + 3] - area * dy) / distance
-                room.sums[8 * at + 3] = (room.sums[8 * at + 4] - area * dz) / distance
-            else:
-                weight = max(area, 0.0) / distance
-                pull = weight / (distance * distance)
-                room.sums[8 * at + 1] = room.sums[8 * at + 5] / distance - pull * dx
-                room.sums[8 * at + 2] = room.sums[8 * at + 6] / distance - pull * dy
-                room.sums[8 * at + 3] = room.sums[8 * at + 7] / distance - pull * dz
-        room.sums[8 * at] = weight
-        total += weight
-    return total
-
-
-@inlined
-def _reproduced(px, py, pz, size, room, total, sites):
-    """Whether the weights' mean of the sites is the point: they are all there."""
-    x, y, z, spread = 0.0, 0.0, 0.0, 0.0
-    for at in range(size):
-        site, weight = 3 * room.found[at], room.sums[8 * at]
-        dx, dy, dz = sites[site] - px, sites[site + 1] - py, sites[site + 2] - pz
-        x, y, z = x + weight * dx, y + weight * dy, z + weight * dz
-        spread += weight * (abs(dx) + abs(dy) + abs(dz))
-    return total > 0.0 and abs(x) + abs(y) + abs(z) <= 1e-11 * spread
-
-
-@inlined
-def _write(size, room, total, limit, differentiate, filled, columns, values, slopes):
-    """One row of coordinates, with gradients if they are wanted; where it ends."""
-    x, y, z = 0.0, 0.0, 0.0
-    if differentiate:
-        for at in range(size):
-            x, y, z = x + room.sums[8 * at + 1], y + room.sums[8 * at + 2], z + room.sums[8 * at + 3]
-    for at in range(size):
-        value = room.sums[8 * at] / total
-        if value > 1e-17 and room.found[at] < limit:
-            columns[filled], values[filled] = room.found[at], value
-            if differentiate:
-                slopes[3 * filled] = (room.sums[8 * at + 1] - value * x) / total
-                slopes[3 * filled + 1] = (room.sums[8 * at + 2] - value * y) / total
-                slopes[3 * filled + 2] = (room.sums[8 * at + 3] - value * z) / total
-            filled += 1
-    return filled

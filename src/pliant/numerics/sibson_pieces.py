@@ -22,7 +22,7 @@ def share(facet, px, py, pz, cells, rounding, outlines, size, room):
     px, py, pz
         The point.
     cells
-        As in :class:`pliant.numerics.voronoi.CellArrays`, as pointers.
+        As in :class:`pliant.numerics.cell_arrays.CellArrays`, as pointers.
     rounding
         Distance within which a corner lies on the cut.
     outlines

@@ -8,8 +8,6 @@ until there are none.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
-from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,31 +18,7 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 FIRST = 24  # near sites that a cell begins with
-SAME_CORNER = 1e-11  # of the largest coordinate: below it, corners of facets are one
 NEARER = 1e-13  # by how much another site's half-space must cut a corner off, relative to the lengths involved
-
-
-class CellArrays(NamedTuple):
-    """Cells as kernels take them: positions, normals and corners flat; (f,) areas; the rest as in :class:`VoronoiCells`.
-
-    ``meetings`` (c,) says which corners are the same place; ``meeting_facets`` are the facets that have a corner in
-    it, from ``meeting_starts`` of the place on. ``number`` is that of the cells.
-    """
-
-    number: int
-    sites: Floats
-    starts: Integers
-    facets: Integers
-    owners: NDArray[np.int32]
-    others: NDArray[np.int32]
-    normals: Floats
-    offsets: Floats
-    areas: Floats
-    corner_starts: Integers
-    corners: Floats
-    meetings: NDArray[np.int32]
-    meeting_starts: Integers
-    meeting_facets: NDArray[np.int32]
 
 
 @dataclass(frozen=True, eq=False)
@@ -76,39 +50,6 @@ class VoronoiCells:
     offsets: Floats
     corner_starts: Integers
     corners: Floats
-
-    @cached_property
-    def arrays(self) -> CellArrays:
-        """The cells as kernels take them."""
-        from scipy.sparse import coo_array
-        from scipy.sparse.csgraph import connected_components
-        from scipy.spatial import cKDTree
-
-        sizes = np.diff(self.corner_starts)
-        places = self.corners + np.repeat(self.sites[self.owners], sizes, axis=0)
-        pairs = cKDTree(places).query_pairs(SAME_CORNER * float(np.abs(places).max()), output_type="ndarray")
-        graph = coo_array((np.ones(len(pairs), bool), pairs.T), shape=(len(places), len(places)))
-        count, meetings = connected_components(graph, directed=False)
-        facets = np.repeat(np.arange(len(sizes), dtype=np.int32), sizes)
-        meetings = meetings.astype(np.int32)
-        order = np.argsort(meetings, kind="stable")
-        return CellArrays(
-            len(self.sites), self.sites.reshape(-1), self.starts, self.facets, self.owners, self.others,
-            self.normals.reshape(-1), self.offsets, self._areas, self.corner_starts, self.corners.reshape(-1), meetings,
-            np.searchsorted(meetings[order], np.arange(count + 1)), facets[order],
-        )  # fmt: skip
-
-    @property
-    def _areas(self) -> Floats:
-        """(f,) the facets' areas: fans of triangles about their first corners."""
-        sizes = np.diff(self.corner_starts)
-        last = np.zeros(len(self.corners), bool)
-        last[self.corner_starts[1:] - 1] = True
-        following = np.arange(1, len(last) + 1)
-        following[last] = self.corner_starts[:-1]
-        apart = self.corners - np.repeat(self.corners[self.corner_starts[:-1]], sizes, axis=0)
-        fans = np.add.reduceat(np.cross(apart, apart[following]), self.corner_starts[:-1])
-        return np.asarray(np.einsum("ij,ij->i", fans, self.normals) / 2)
 
     @classmethod
     def of(cls, sites: Floats, wall: float, always: Integers) -> VoronoiCells:
