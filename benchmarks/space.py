@@ -186,6 +186,63 @@ def landmark_comparisons() -> list[Comparison]:
     ]
 
 
+def free_lattice_comparisons() -> list[Comparison]:
+    """200 sites anywhere and a cylindrical lattice, 100,000 points: binding, evaluating, moving one control."""
+    from pliant.space.dirichlet_ffd import DirichletFFD
+    from pliant.space.extended_ffd import ExtendedFFD
+
+    sites, points = np.random.default_rng(0).random((200, 3)), POINTS[:100_000]
+    inner = (np.abs(points - 0.5) < 0.2).all(axis=1)
+    kinds = {"Sibson": {}, "Laplace": {"coordinates": "laplace"}, "Farin": {"smooth": True}}
+    dirichlet = {name: DirichletFFD(sites, **options) for name, options in kinds.items()}
+    bound = {name: deformer.bind(points) for name, deformer in dirichlet.items()}
+    for name in ("Sibson", "Laplace"):
+        assert np.abs(bound[name].matrix() @ sites - points)[inner].max() < 1e-12, name
+    drag, controls = bound["Sibson"].drag(sites), sites.copy()
+    drum = ExtendedFFD.cylinder(points, shape=(8, 4, 4))
+    drum_bound, out = drum.bind(points), np.empty_like(points)
+
+    def move_one() -> None:
+        controls[17] += 1e-4
+        drag.update(controls, changed=[17])
+
+    return [
+        Comparison(
+            "Dirichlet FFD, 200 sites, 100k points: bind",
+            {
+                "pliant, Sibson": lambda: DirichletFFD(sites).bind(points),
+                "pliant, Laplace": lambda: DirichletFFD(sites, coordinates="laplace").bind(points),
+                "pliant, Farin's C1 form": lambda: DirichletFFD(sites, smooth=True).bind(points),
+                "SciPy Delaunay, linear weights": lambda: scipy_linear_weights(sites, points),
+            },
+            rounds=5,
+        ),
+        Comparison(
+            "the same, bound: one site moved",
+            {"pliant, drag": move_one, "pliant, all anew": lambda: bound["Sibson"].deform(controls, out=out)},
+        ),
+        Comparison(
+            "extended FFD, a cylinder of 8 x 4 x 4 control points, 100k points",
+            {
+                "pliant, bind": lambda: drum.bind(points),
+                "pliant, bound": lambda: drum_bound.deform(drum.rest, out=out),
+            },
+            rounds=5,
+        ),
+    ]
+
+
+def scipy_linear_weights(sites, points):
+    """Barycentric weights in the Delaunay tetrahedra: four sites a point, and kinks at every face."""
+    from scipy.spatial import Delaunay
+
+    mesh = Delaunay(sites)
+    cell = mesh.find_simplex(points)
+    frame = mesh.transform[cell]
+    weights = np.einsum("nij,nj->ni", frame[:, :3], points - frame[:, 3])
+    return mesh.simplices[cell], np.column_stack([weights, 1 - weights.sum(axis=1)])
+
+
 def vtk_bspline(displacements, lattice):
     """vtkBSplineTransform as shipped, through vtkTransformFilter."""
     from vtkmodules.util.numpy_support import numpy_to_vtk, vtk_to_numpy
@@ -323,6 +380,7 @@ def compile_note() -> str:
 
 if __name__ == "__main__":
     comparisons = bspline_comparisons() + bezier_comparisons() + barr_comparisons() + landmark_comparisons()
+    comparisons += free_lattice_comparisons()
     print(
         report(
             "Space deformers",

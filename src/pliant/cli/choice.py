@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 import typer
 
 from pliant.cli.deformer_options import BASES, Step, made
+from pliant.cli.free_lattices import FreeLattice, site_move
 from pliant.cli.options import Edge, MeshSpace, Placement, Variant, lattice_move, lattice_shape, three_numbers
 
 if TYPE_CHECKING:
@@ -32,6 +33,7 @@ class Choice:
     inverse: bool = False
     mesh_space: MeshSpace = MeshSpace.as_is
     steps: tuple[Step, ...] = ()
+    tool: FreeLattice | None = None
 
     def deformer(self, mesh: PolygonMesh) -> SpaceDeformer | None:
         """The deformer, in the space of the mesh; None where no option asks for one.
@@ -43,6 +45,9 @@ class Choice:
         """
         if self.ffd is not None and self.lattice is not None:
             raise typer.BadParameter("give one of --ffd and --lattice, not both", param_hint="--lattice")
+        if self.tool is not None and (self.ffd is not None or self.lattice is not None):
+            other = "--lattice" if self.ffd is None else "--ffd"
+            raise typer.BadParameter(f"give one of {other} and {self.tool.option}", param_hint=self.tool.option)
         base = self._base(mesh)
         if base is None and (self.moves or (self.inverse and not self.steps)):
             raise typer.BadParameter("there is nothing to move or invert: add --ffd or --lattice")
@@ -64,7 +69,7 @@ class Choice:
 
     def _base(self, mesh: PolygonMesh) -> SpaceDeformer | None:
         """The lattice or the file's transform, moved and turned as asked for."""
-        if self.ffd is None and self.lattice is None:
+        if self.ffd is None and self.lattice is None and self.tool is None:
             return None
         found = self._read(mesh) if self.ffd is not None else self._new(mesh)
         if self.moves:
@@ -101,9 +106,11 @@ class Choice:
     def _new(self, mesh: PolygonMesh) -> SpaceDeformer:
         from pliant.space.bspline_ffd import BSplineFFD
 
-        assert self.lattice is not None
         if self.mesh_space is MeshSpace.lps:
-            raise typer.BadParameter("--lattice is made in the mesh's own space; --mesh-space goes with --ffd")
+            raise typer.BadParameter("a lattice is made in the mesh's own space; --mesh-space goes with --ffd")
+        if self.tool is not None:
+            return self.tool.laid(mesh, self.margin)
+        assert self.lattice is not None
         return BSplineFFD.around(mesh, shape=lattice_shape(self.lattice), margin=self.margin, edge=self.edge.value)
 
 
@@ -116,6 +123,11 @@ def half_turn() -> Affine:
 
 def _moved(deformer: SpaceDeformer, moves: tuple[str, ...]) -> SpaceDeformer:
     controls = deformer.controls.copy()
+    if controls.ndim == 2:
+        for text in moves:
+            at, offset = site_move(text, len(controls))
+            controls[at] += offset
+        return deformer.moved(controls)
     if controls.ndim != 4:
         raise typer.BadParameter(f"a {type(deformer).__name__} has no lattice of control points", param_hint="--move")
     for text in moves:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
+from pliant.cli import free_lattices as free
 from pliant.cli import options as opt
 from pliant.cli.choice import Choice
 from pliant.cli.deformer_options import STEPS
@@ -26,6 +27,11 @@ def deform(
     edge: opt.EdgeOption = opt.Edge.clamp,
     origin: opt.OriginOption = None,
     lattice: opt.LatticeOption = None,
+    dirichlet: free.DirichletOption = None,
+    sites_to: free.SitesToOption = None,
+    cylinder: free.CylinderOption = None,
+    prism: free.PrismOption = None,
+    sphere: free.SphereOption = None,
     margin: opt.MarginOption = 0.0,
     move: opt.MoveOption = None,
     inverse: opt.InverseOption = False,
@@ -40,8 +46,9 @@ def deform(
     turn. Polygons, texture coordinates, groups and materials stay as they are; stored normals follow.
     """
     steps = context.meta[STEPS]
+    tool = free.free_lattice(dirichlet, sites_to, cylinder, prism, sphere)
     choice = Choice(
-        ffd, placement, variant, edge, origin, lattice, margin, tuple(move or ()), inverse, mesh_space, steps
+        ffd, placement, variant, edge, origin, lattice, margin, tuple(move or ()), inverse, mesh_space, steps, tool
     )
     with Session(json=json, quiet=quiet) as session:
         deform_file(session, mesh, output, choice, strict=strict)
