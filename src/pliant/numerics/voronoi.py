@@ -158,13 +158,19 @@ def _find_offenders(
     length = np.linalg.norm(apart, axis=1)
     depth = np.einsum("ij,ij->i", local, apart) - length**2 / 2
     offends = depth > NEARER * length * (np.linalg.norm(local, axis=1) + length)
+    owner, offender = owners[offends], nearest[offends]  # owners ascend
     again = []
-    for i in np.unique(owners[offends]):
-        more = np.union1d(candidates[i], nearest[offends & (owners == i)])
+    for i, first, last in zip(*np.unique(owner, return_index=True), _ends(owner), strict=True):
+        more = np.union1d(candidates[i], offender[first:last])
         if len(more) > len(candidates[i]):  # a site that is there already cuts deeper by rounding only
             candidates[i] = _sorted(sites, i, more)
             again.append(i)
     return np.array(again, np.int64)
+
+
+def _ends(ascending: Integers) -> Integers:
+    """Where each run of equal numbers ends."""
+    return np.flatnonzero(np.diff(ascending, append=-1)) + 1 if len(ascending) else ascending
 
 
 def _assembled(cls: type[VoronoiCells], sites: Floats, cells: list[_Cell]) -> VoronoiCells:
