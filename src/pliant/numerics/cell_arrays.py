@@ -25,7 +25,7 @@ class CellArrays(NamedTuple):
     number: int
     sites: Floats
     starts: Integers
-    facets: Integers
+    facets: NDArray[np.int32]
     owners: NDArray[np.int32]
     others: NDArray[np.int32]
     normals: Floats
@@ -53,7 +53,7 @@ def flat_cells(cells: VoronoiCells) -> CellArrays:
     meetings = meetings.astype(np.int32)
     order = np.argsort(meetings, kind="stable")
     return CellArrays(
-        len(cells.sites), cells.sites.reshape(-1), cells.starts, cells.facets, cells.owners, cells.others,
+        len(cells.sites), cells.sites.reshape(-1), cells.starts, cells.facets.astype(np.int32), cells.owners, cells.others,
         cells.normals.reshape(-1), cells.offsets, _areas(cells), cells.corner_starts, cells.corners.reshape(-1),
         meetings, np.searchsorted(meetings[order], np.arange(count + 1)), facets[order],
     )  # fmt: skip

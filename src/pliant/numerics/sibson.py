@@ -118,27 +118,32 @@ def _search(px, py, pz, start, stamp, by_corners, cells, rounding, outlines, roo
     for k in range(8):
         room.sums[k] = 0.0
     size, at, queued, begun = 1, 0, 0, False
-    while at < size and not begun:
-        for place in range(cells.starts[room.found[at]], cells.starts[room.found[at] + 1]):
-            facet = cells.facets[place]
-            if not begun and room.asked[facet] != stamp:
-                room.asked[facet] = stamp
-                size, touched = share(facet, px, py, pz, cells, rounding, outlines, size, room)
-                if touched and by_corners:
-                    begun = True
-                    queued = _meet(facet, stamp, cells, room, queued)
-        at += 1
-    while queued > 0:
-        queued -= 1
-        corner = room.waiting[queued]
-        for place in range(cells.meeting_starts[corner], cells.meeting_starts[corner + 1]):
-            facet = cells.meeting_facets[place]
-            if room.asked[facet] != stamp:
-                room.asked[facet] = stamp
-                size, touched = share(facet, px, py, pz, cells, rounding, outlines, size, room)
-                if touched:
-                    queued = _meet(facet, stamp, cells, room, queued)
-    return size
+    source, place, end = cells.facets, 0, 0
+    while True:
+        if place == end:
+            if queued > 0:
+                queued -= 1
+                corner = room.waiting[queued]
+                source, place, end = (
+                    cells.meeting_facets,
+                    cells.meeting_starts[corner],
+                    cells.meeting_starts[corner + 1],
+                )
+            elif at < size and not begun:
+                cell = room.found[at]
+                source, place, end = cells.facets, cells.starts[cell], cells.starts[cell + 1]
+                at += 1
+            else:
+                return size
+            continue
+        facet = source[place]
+        place += 1
+        if room.asked[facet] != stamp:
+            room.asked[facet] = stamp
+            size, touched = share(facet, px, py, pz, cells, rounding, outlines, size, room)
+            if touched and by_corners:
+                begun = True
+                queued = _meet(facet, stamp, cells, room, queued)
 
 
 @inlined

@@ -43,18 +43,16 @@ def share(facet, px, py, pz, cells, rounding, outlines, size, room):
     area, crossings = _kept(facet, dx, dy, dz, cells, rounding, room.signed, room.ends)
     if area < 0.0:
         return size, False
-    size = _join(own, size, room)
     nx, ny, nz = cells.normals[3 * facet], cells.normals[3 * facet + 1], cells.normals[3 * facet + 2]
     offset = cells.offsets[facet]
     half = 0.5 * (nx * dx + ny * dy + nz * dz)
-    room.sums[8 * room.slots[own]] += (offset - half) * area
-    if crossings and outlines:
-        _outline(room.sums, 8 * room.slots[own], dx, dy, dz, nx, ny, nz, 0.0, 1.0, room.ends)
-    if other >= 0:
-        size = _join(other, size, room)
-        room.sums[8 * room.slots[other]] += half * area
+    for side in range(1 if other < 0 else 2):
+        site = own if side == 0 else other
+        size = _join(site, size, room)
+        at = 8 * room.slots[site]
+        room.sums[at] += (offset - half if side == 0 else half) * area
         if crossings and outlines:
-            _outline(room.sums, 8 * room.slots[other], dx, dy, dz, nx, ny, nz, 2.0 * offset, -1.0, room.ends)
+            _outline(room.sums, at, dx, dy, dz, nx, ny, nz, 2.0 * offset * side, 1.0 - 2.0 * side, room.ends)
     return size, True
 
 
