@@ -53,9 +53,9 @@ def flat_cells(cells: VoronoiCells) -> CellArrays:
     meetings = meetings.astype(np.int32)
     order = np.argsort(meetings, kind="stable")
     return CellArrays(
-        len(cells.sites), cells.sites.reshape(-1), cells.starts, cells.facets.astype(np.int32), cells.owners, cells.others,
-        cells.normals.reshape(-1), cells.offsets, _areas(cells), cells.corner_starts, cells.corners.reshape(-1),
-        meetings, np.searchsorted(meetings[order], np.arange(count + 1)), facets[order],
+        len(cells.sites), cells.sites.reshape(-1), cells.starts, cells.facets.astype(np.int32), cells.owners,
+        cells.others, cells.normals.reshape(-1), cells.offsets, _areas(cells), cells.corner_starts,
+        cells.corners.reshape(-1), meetings, np.searchsorted(meetings[order], np.arange(count + 1)), facets[order],
     )  # fmt: skip
 
 

@@ -44,7 +44,10 @@ def cut_cells(
         How many facets there are, and 0; or which space was too small: 1 facets, 2 corners, 3 polygon.
     """
     facets, places, room = 0, 0, work.shape[1] // 3
-    planes = np.empty((int(np.max(np.diff(starts))) + 6, 4))
+    longest = 0
+    for cell in range(len(chosen)):
+        longest = max(longest, starts[cell + 1] - starts[cell])
+    planes = np.empty((longest + 6, 4))
     owners, beyond = np.empty(len(planes), np.int32), np.empty(room)
     for cell in range(len(chosen)):
         others = candidates[starts[cell] : starts[cell + 1]]
@@ -59,10 +62,12 @@ def cut_cells(
                 return facets, 1
             if 3 * (places + size) > len(corners):
                 return facets, 2
-            corners[3 * places : 3 * (places + size)] = work[source, : 3 * size]
+            for n in range(3 * size):
+                corners[3 * places + n] = work[source, n]
             places += size
             neighbors[facets], offsets[facets] = owners[at], planes[at, 3]
-            normals[3 * facets : 3 * facets + 3] = planes[at, :3]
+            for axis in range(3):
+                normals[3 * facets + axis] = planes[at, axis]
             corner_ends[facets] = places
             facets += 1
         facet_ends[cell] = facets
@@ -79,12 +84,13 @@ def _lay_planes(own, others, sites, wall, planes, owners):
             planes[at, axis] = sites[3 * others[at] + axis] - sites[own + axis]
             length += planes[at, axis] ** 2
         length = np.sqrt(length)
-        planes[at, :3] /= length
+        for axis in range(3):
+            planes[at, axis] /= length
         planes[at, 3] = length / 2
     for side in range(6):
         at, axis, sign = len(others) + side, side // 2, 1.0 - 2.0 * (side % 2)
-        planes[at, :3] = 0.0
-        planes[at, axis] = sign
+        for other in range(3):
+            planes[at, other] = sign if other == axis else 0.0
         planes[at, 3] = wall - sign * sites[own + axis]
         owners[at] = -1
     return len(others) + 6
@@ -109,16 +115,20 @@ def _cut_facet(at, count, planes, reach, work, beyond):
 def _lay_square(plane, half, polygon):
     """A square in a plane, counter-clockwise about its normal."""
     x, y, z, offset = plane[0], plane[1], plane[2], plane[3]
-    least = np.argmin(np.abs(plane[:3]))
-    a = np.zeros(3)
-    a[least] = 1.0
-    u = np.array([a[1] * z - a[2] * y, a[2] * x - a[0] * z, a[0] * y - a[1] * x])
-    u /= np.sqrt(u[0] ** 2 + u[1] ** 2 + u[2] ** 2)
-    v = np.array([y * u[2] - z * u[1], z * u[0] - x * u[2], x * u[1] - y * u[0]])
+    if abs(x) <= min(abs(y), abs(z)):
+        ux, uy, uz = 0.0, -z, y
+    elif abs(y) <= abs(z):
+        ux, uy, uz = z, 0.0, -x
+    else:
+        ux, uy, uz = -y, x, 0.0
+    length = half / np.sqrt(ux * ux + uy * uy + uz * uz)
+    ux, uy, uz = length * ux, length * uy, length * uz
+    vx, vy, vz = y * uz - z * uy, z * ux - x * uz, x * uy - y * ux
     for corner in range(4):
         p, q = (1.0 if corner in (0, 3) else -1.0), (1.0 if corner < 2 else -1.0)
-        for axis in range(3):
-            polygon[3 * corner + axis] = plane[axis] * offset + half * (p * u[axis] + q * v[axis])
+        polygon[3 * corner] = x * offset + p * ux + q * vx
+        polygon[3 * corner + 1] = y * offset + p * uy + q * vy
+        polygon[3 * corner + 2] = z * offset + p * uz + q * vz
 
 
 @inlined

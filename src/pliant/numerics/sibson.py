@@ -60,7 +60,8 @@ def coordinates(points, order, cells, seeds, room, kind, on_site, rounding, limi
         if _distance(px, py, pz, cells.sites, start) <= on_site:
             if start < limit:
                 columns[filled], values[filled] = start, 1.0
-                slopes[3 * filled : 3 * filled + 3] = 0.0
+                if differentiate:
+                    slopes[3 * filled] = slopes[3 * filled + 1] = slopes[3 * filled + 2] = 0.0
                 filled += 1
             row_ends[row] = filled
             continue
