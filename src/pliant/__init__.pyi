@@ -34,6 +34,9 @@ from .io.transforms import read_transform as read_transform
 from .io.transforms import write_transform as write_transform
 from .mesh import PolygonMesh as PolygonMesh
 from .rendering.pictures import render as render
+from .scene.layer import Layer as Layer
+from .scene.scene import Scene as Scene
+from .scene.stack import Stack as Stack
 from .shape.bspline_kernel import BSplineKernel as BSplineKernel
 from .shape.closest_point_chain import ClosestPointDensity as ClosestPointDensity
 from .shape.diagnostics import effective_sample_size as effective_sample_size

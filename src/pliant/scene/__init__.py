@@ -1,0 +1,1 @@
+"""Scenes: stacks of deformers, key frames, project files, templates, export."""

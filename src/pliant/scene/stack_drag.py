@@ -1,0 +1,162 @@
+"""The controls of one layer are dragged: points that they reach travel through the layers above, no others."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from pliant.deformer import Controls
+from pliant.mesh import Points, PolygonMesh
+from pliant.scene.frames import turned
+from pliant.scene.layer import Layer
+
+if TYPE_CHECKING:
+    from pliant.scene.stack import Stack
+    from pliant.scene.stack_binding import StackBinding
+
+Rows = NDArray[np.integer] | slice
+
+
+class LayerDrag:
+    """An interaction with one layer of a stack: owns its buffers and keeps them up to date.
+
+    Parameters
+    ----------
+    binding
+        The stack, evaluated.
+    name
+        The layer whose controls move. While it is left out, its controls move and no point does.
+    """
+
+    def __init__(self, binding: StackBinding, name: str) -> None:
+        self._binding, self._layer = binding, binding.stack[name]
+        inner = binding.bound(name)
+        self._controls = inner._checked(None if self._layer.in_space else _goal(self._layer)).copy()
+        if self._layer.in_space:
+            self._controls = self._layer.deformer.controls.copy()
+        self._drag = inner.drag(self._controls)
+        self._heard = self._layer in binding.stack.active
+        self._result = np.array(binding.result)
+        if self._heard:
+            self._stages = self._begun()
+
+    def _begun(self) -> list[_Stage]:
+        steps = list(self._binding._steps.values())
+        place = next(i for i, step in enumerate(steps) if step.layer is self._layer)
+        added = self._binding.stack.mode == "add"
+        mesh = self._binding.target
+        first = _Stage(self._layer, steps[place].at, steps[place].below, np.array(steps[place].points), mesh, added)
+        if added:
+            first.points = self._result
+            first.below = self._result - first.displacement(self._drag.points)
+            return [first]
+        stages = [first]
+        for step in steps[place + 1 :]:
+            stage = _Stage(step.layer, step.at, stages[-1].points, np.array(step.points), mesh, added)
+            if not step.layer.in_space:
+                stage.own = self._binding._evaluator.binding(step).deform(_goal(step.layer))
+            stages.append(stage)
+        return stages
+
+    @property
+    def points(self) -> Points:
+        """(n, 3) the deformed points now: a read-only view of the buffer."""
+        view = (self._stages[-1].points if self._heard else self._result).view()
+        view.flags.writeable = False
+        return view
+
+    @property
+    def controls(self) -> Controls:
+        """Where the layer's controls are now."""
+        return self._controls.copy()
+
+    @property
+    def stack(self) -> Stack:
+        """The stack with the layer's controls where they are now."""
+        moved = self._layer.deformer.moved(self._controls)
+        return self._binding.stack.replace(self._layer.name, deformer=moved)
+
+    def update(self, controls: ArrayLike, changed: Any = None) -> NDArray[np.integer]:
+        """Move the layer's controls.
+
+        Parameters
+        ----------
+        controls
+            All of them, shaped as the deformer's.
+        changed
+            Indices of those that differ from the last call; None = find out.
+
+        Returns
+        -------
+        ndarray
+            (k,) indices of the points that were recomputed.
+        """
+        touched = self._drag.update(controls, changed)
+        self._controls = np.array(controls, np.float64)
+        if not self._heard or not len(touched):
+            return np.empty(0, np.int64)
+        self._stages[0].settle(_rows(touched, len(self._result)), self._drag.points)
+        for stage in self._stages[1:]:
+            touched = stage.reached(touched)
+            stage.settle(_rows(touched, len(self._result)), stage.own)
+        return touched
+
+
+class _Stage:
+    """The dragged layer, or one above it: its input, its output, and how to bring some rows of it up to date."""
+
+    def __init__(self, layer: Layer, at: Points, below: Points, points: Points, target: Any, added: bool) -> None:
+        self.layer, self.below, self.points = layer, below, points
+        self.own: Points | None = None  # where the deformer alone puts the points; None = to be computed
+        self._rest, self._mesh = at, target
+        self._turns = not layer.in_space and not added and isinstance(target, PolygonMesh)
+        self._plain = layer.in_space and not added
+
+    def displacement(self, image: Points, rows: Rows = slice(None)) -> Points:
+        strength = self.layer.strength
+        factor = strength[rows, None] if isinstance(strength, np.ndarray) else strength
+        return np.asarray(factor * (image[rows] - self._rest[rows]))
+
+    def reached(self, touched: NDArray[np.integer]) -> NDArray[np.integer]:
+        """The points that change when some below have: where the surface turns, their neighbours too."""
+        if not self._turns or len(touched) == len(self.points):
+            return touched
+        assert isinstance(self._mesh, PolygonMesh)
+        marked = np.zeros(len(self.points), bool)
+        marked[touched] = True
+        around = self._mesh.edges[marked[self._mesh.edges].any(axis=1)]
+        marked[around.reshape(-1)] = True
+        return np.flatnonzero(marked)
+
+    def settle(self, rows: Rows, image: Points | None) -> None:
+        """Bring some rows up to date; ``image`` is where the deformer alone puts the points."""
+        if self._plain:
+            below = self.below[rows]
+            moved = self.layer.deformer._deformed(below) if image is None else image[rows]
+            strength = self.layer.strength
+            factor = strength[rows, None] if isinstance(strength, np.ndarray) else strength
+            self.points[rows] = (
+                moved if isinstance(factor, float) and factor == 1.0 else below + factor * (moved - below)
+            )
+            return
+        assert image is not None
+        displacement = self.displacement(image, rows)
+        if self._turns:
+            assert isinstance(self._mesh, PolygonMesh)
+            vertices = np.arange(len(self.points)) if isinstance(rows, slice) else rows
+            some = np.flatnonzero(displacement.any(axis=1))
+            rotation = turned(self._mesh, self.below, np.asarray(vertices[some], np.int64))
+            displacement[some] = np.einsum("nij,nj->ni", rotation, displacement[some])
+        self.points[rows] = self.below[rows] + displacement
+
+
+def _rows(touched: NDArray[np.integer], count: int) -> Rows:
+    return slice(None) if len(touched) == count else touched
+
+
+def _goal(layer: Layer) -> Controls | None:
+    """A surface layer's controls; None = at rest."""
+    goal = getattr(layer.deformer, "goal", None)
+    return None if goal is None else np.asarray(goal, np.float64)
