@@ -22,9 +22,10 @@ _known: dict[int, bytes] = {}
 
 
 def key_of(*parts: Any) -> bytes:
-    """The key of values of any kind that :func:`~pliant.scene.values.encode` knows; functions are known by identity."""
+    """The key of other keys and of any values that can be encoded; functions are known by identity."""
     arrays: Arrays = {}
-    data = encode(parts, arrays, "", opaque=lambda thing: f"{type(thing).__qualname__} {id(thing)}")
+    named = [part.hex() if isinstance(part, bytes) else part for part in parts]
+    data = encode(named, arrays, "", opaque=lambda thing: f"{type(thing).__qualname__} {id(thing)}")
     digest = blake2b(orjson.dumps(data), digest_size=16)
     for name, array in arrays.items():
         digest.update(name.encode() + array_key(array))
