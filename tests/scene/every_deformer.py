@@ -23,7 +23,7 @@ def every_deformer() -> dict[str, Deformer]:
     low, high = MESH.bounds
     grid = {"origin": low, "spacing": (high - low) / 4}
     field = pl.GaussianProcess(kernel).posterior(few, few + 0.01, noise=0.01).deformer()
-    found = {
+    return {
         "affine": pl.Affine.rotation([1, 2, 3], 0.4),
         "arap": pl.ARAP(ROI, HANDLE, goal=GOAL, smoothness=0.01),
         "bend": pl.Bend.around(MESH, axis="x", angle=0.4, center=1.0),
@@ -57,4 +57,3 @@ def every_deformer() -> dict[str, Deformer]:
         "twist": pl.Twist.around(MESH, angle=0.5, profile=[(0, 0), (0.5, 1), (1, 0.2)]),
         "wave": pl.Wave.around(MESH, amplitude=0.1, phase=1.0, profile=0.5),
     }
-    return found

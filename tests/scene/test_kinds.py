@@ -134,7 +134,7 @@ def test_bad_data_is_told(kind, data, cause):
 def test_makers_say_what_they_know():
     with pytest.raises(InvalidParameter, match="ways to lay one around a shape: around"):
         all_kinds()["twist"].around(MESH, maker="cylinder")
-    with pytest.raises(InvalidParameter, match="knows no 'sides'; it knows: .*axis"):
+    with pytest.raises(InvalidParameter, match=r"knows no 'sides'; it knows: .*axis"):
         all_kinds()["twist"].around(MESH, {"sides": 3})
     with pytest.raises(InvalidParameter, match="none: it is made from its fields"):
         all_kinds()["dirichlet-ffd"].around(MESH)

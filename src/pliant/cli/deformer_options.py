@@ -1,6 +1,6 @@
 """An option for every deformer that a few numbers control, made from its fields: ``--twist axis=z,angle=90``.
 
-Nothing is listed here: what is in the house's room for maps of space, names its ``parameters`` and can be laid
+Nothing is listed here: of the kinds of deformers, each map of space that names its ``parameters`` and can be laid
 ``around`` a mesh has an option of its name. They are looked for only where one is used, or help is asked for.
 """
 
@@ -15,7 +15,7 @@ import typer
 from typer.core import TyperCommand
 
 if TYPE_CHECKING:
-    from pliant.deformer import SpaceDeformer
+    from pliant.deformer import Deformer, SpaceDeformer
     from pliant.mesh import PolygonMesh
 
 Step = tuple[str, str]
@@ -61,21 +61,11 @@ class DeformingCommand(TyperCommand):
             formatter.write_dl(rows)
 
 
-def deformers() -> dict[str, type[SpaceDeformer]]:
+def deformers() -> dict[str, type[Deformer]]:
     """The deformers that have an option, by its name."""
-    import importlib
-    import pkgutil
+    from pliant.scene.kinds import all_kinds
 
-    from pliant import space
-    from pliant.deformer import SpaceDeformer
-
-    found: dict[str, type[SpaceDeformer]] = {}
-    for entry in pkgutil.iter_modules(space.__path__):
-        module = importlib.import_module(f"{space.__name__}.{entry.name}")
-        for name, kind in inspect.getmembers(module, inspect.isclass):
-            if kind.__module__ == module.__name__ and issubclass(kind, SpaceDeformer) and _has_option(kind):
-                found[re.sub(r"(?<=[a-z])(?=[A-Z])", "-", name).lower()] = kind
-    return dict(sorted(found.items()))
+    return {name: kind.cls for name, kind in all_kinds().items() if kind.space and _has_option(kind.cls)}
 
 
 def made(step: Step, mesh: PolygonMesh) -> SpaceDeformer:
