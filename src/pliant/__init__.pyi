@@ -1,5 +1,14 @@
 from .errors import PliantError as PliantError
 from .errors import PliantWarning as PliantWarning
+from .face.dense import dense_face as dense_face
+from .face.exaggeration import Caricature as Caricature
+from .face.exaggeration import caricature as caricature
+from .face.face import Face as Face
+from .face.face import face_from_photo as face_from_photo
+from .face.face import faces_from_photo as faces_from_photo
+from .face.handles import FaceHandles as FaceHandles
+from .face.landmarks import NoFace as NoFace
+from .face.topology import mean_face as mean_face
 from .field.blocks import deformed_volume as deformed_volume
 from .field.certificate import Certificate as Certificate
 from .field.certifying import certify as certify

@@ -13,6 +13,7 @@ from pliant.cli.deformer_options import DeformingCommand
 from pliant.cli.demo import demo
 from pliant.cli.edit import edit
 from pliant.cli.exits import EXPLAINED
+from pliant.cli.face import face
 from pliant.cli.info import info
 from pliant.cli.model import app as model
 from pliant.cli.render import render
@@ -28,7 +29,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,  # bugs are reported by the entry point
     epilog=EXPLAINED,
 )
-for command in (deform, warp, edit, skeleton, smooth, transfer, info, check, convert, render, demo):
+for command in (deform, warp, edit, skeleton, smooth, transfer, info, check, convert, render, face, demo):
     app.command(cls=DeformingCommand if command in (deform, render) else None)(command)
 
 app.add_typer(model, name="model")

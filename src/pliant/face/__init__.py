@@ -1,0 +1,1 @@
+"""Faces: from a photograph to a textured mesh, its caricature, and handles that move it."""
