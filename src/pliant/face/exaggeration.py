@@ -116,7 +116,7 @@ def caricature(
 def _moving(face: Face, chosen: NDArray[np.int64], wanted: Points, by: Way) -> DirichletFFD | BSplineFFD:
     """A deformer that brings the landmarks where they are wanted."""
     if by == "sites":
-        deformer = DirichletFFD(face.landmarks[chosen])
+        deformer = DirichletFFD(face.landmarks[chosen], smooth=True)
         return deformer.moved(deformer.rest + wanted[chosen])
     lattice = BSplineFFD.around(face.mesh, shape=SHAPE, margin=ROOM)
     return pull(lattice, face.landmarks, face.landmarks + wanted, regularization=STIFFNESS)

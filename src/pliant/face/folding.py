@@ -16,6 +16,7 @@ from pliant.space.dirichlet_ffd import DirichletFFD
 Floats = NDArray[np.float64]
 
 MARGIN = 0.05  # the least det J that is left
+FEW = 5000  # faces, of which the middles are looked at too
 STEPS = 200  # looked at between rest and all of the deformation
 
 
@@ -44,7 +45,8 @@ class Foldless:
 def without_folds(deformer: DirichletFFD | BSplineFFD, mesh: PolygonMesh) -> Foldless:
     """A deformer with the largest part of its displacements that keeps det J above a margin, from rest up to it.
 
-    For a lattice this is proved in all of space; with sites, vertices and middles of faces of the mesh are looked at.
+    For a lattice this is proved in all of space; with sites, the vertices of the mesh are looked at, and the middles
+    of its faces where these are few.
     """
     if isinstance(deformer, BSplineFFD):
         limited = limit_to_fold_free(deformer, MARGIN)
@@ -52,7 +54,9 @@ def without_folds(deformer: DirichletFFD | BSplineFFD, mesh: PolygonMesh) -> Fol
         whole = float(np.abs(deformer.controls - deformer.rest).max())
         part = float(np.abs(limited.controls - limited.rest).max()) / whole if whole else 1.0
         return Foldless(limited, part, proof.lower, proof.status == "fold-free")
-    places = np.vstack([mesh.points, mesh.points[mesh.triangles].mean(axis=1)])
+    places = mesh.points
+    if len(mesh.faces) < FEW:
+        places = np.vstack([places, mesh.points[mesh.triangles].mean(axis=1)])
     part, least = _largest_part(deformer.jacobian(places) - np.eye(3))
     scaled = deformer.moved(deformer.rest + part * (deformer.controls - deformer.rest))
     return Foldless(scaled if part < 1 else deformer, part, least, proved=False)

@@ -33,7 +33,7 @@ class FaceHandles(SpaceDeformer):
     Parameters
     ----------
     landmarks
-        (468, 3) of a face at rest, such as :attr:`Face.landmarks`.
+        (468, 3) of a face at rest, such as ``face.landmarks``.
     displacements
         (h, 3) of each handle; None = at rest.
 

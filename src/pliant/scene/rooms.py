@@ -18,6 +18,7 @@ from typing import Any
 from pliant.deformer import Deformer
 
 ROOMS = ("pliant.space", "pliant.surface", "pliant.shape")
+ABOVE = ("pliant.face.handles",)  # deformers in rooms above this one
 RECORDS = ("pliant.attributes", "pliant.mesh", "pliant.numerics.patch_block", "pliant.numerics.ragged")
 
 
@@ -59,7 +60,7 @@ def _modules() -> tuple[ModuleType, ...]:
     names = []
     for room in map(importlib.import_module, ROOMS):
         names += [f"{room.__name__}.{entry.name}" for entry in pkgutil.iter_modules(room.__path__)]
-    return tuple(map(importlib.import_module, names))
+    return tuple(map(importlib.import_module, (*names, *ABOVE)))
 
 
 def _below(kind: type[Deformer]) -> list[type[Deformer]]:
