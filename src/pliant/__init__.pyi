@@ -1,3 +1,6 @@
+from .cages.building import build_cage as build_cage
+from .cages.checking import CageReport as CageReport
+from .cages.checking import check_cage as check_cage
 from .errors import PliantError as PliantError
 from .errors import PliantWarning as PliantWarning
 from .face.dense import dense_face as dense_face
@@ -43,8 +46,13 @@ from .io.transforms import read_transform as read_transform
 from .io.transforms import write_transform as write_transform
 from .mesh import PolygonMesh as PolygonMesh
 from .rendering.pictures import render as render
+from .scene.animation.formats import read_sequence as read_sequence
+from .scene.clip import Clip as Clip
 from .scene.layer import Layer as Layer
+from .scene.project import load_project as load_project
+from .scene.project import save_project as save_project
 from .scene.scene import Scene as Scene
+from .scene.sequence import MeshSequence as MeshSequence
 from .scene.stack import Stack as Stack
 from .shape.bspline_kernel import BSplineKernel as BSplineKernel
 from .shape.closest_point_chain import ClosestPointDensity as ClosestPointDensity
@@ -74,6 +82,7 @@ from .space.bend import Bend as Bend
 from .space.bezier_ffd import BezierFFD as BezierFFD
 from .space.bezier_patch_ffd import BezierPatchFFD as BezierPatchFFD
 from .space.bspline_ffd import BSplineFFD as BSplineFFD
+from .space.cage import Cage as Cage
 from .space.clamped_ffd import ClampedFFD as ClampedFFD
 from .space.compose import compose as compose
 from .space.direct import pull as pull

@@ -49,6 +49,18 @@ def _unreadable(path: Path | str, cause: str, cure: str, line: int | None, byte:
     return UnreadableFile(path, cause, cure, line=line, byte=byte)
 
 
+class UnwritableFile(PliantError):
+    """A file that the system does not let be written; what stood there before still does."""
+
+    def __init__(self, path: Path | str, cause: str) -> None:
+        self.path, self.cause = path, cause
+        super().__init__(f"{path} could not be written: {cause} (what was there before is as it was; make room, or "
+                         "choose another place)")  # fmt: skip
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return UnwritableFile, (self.path, self.cause)
+
+
 class UnsupportedFormat(PliantError):
     """A file format, or a part of one, that pliant does not read or write."""
 

@@ -46,6 +46,7 @@ def replacing(path: Path | str) -> Iterator[Path]:
         with temporary.open("rb") as written:
             os.fsync(written.fileno())
         temporary.replace(target)
+        _settle(target.parent)
     finally:
         temporary.unlink(missing_ok=True)
 
@@ -57,6 +58,16 @@ def write_bytes(path: Path | str, parts: bytes | Iterable[bytes | memoryview]) -
             stream.write(parts)
         else:
             stream.writelines(parts)
+
+
+def _settle(folder: Path) -> None:
+    """Have the system write down that a file was renamed, where it offers that."""
+    if os.name == "posix":
+        handle = os.open(folder, os.O_RDONLY)
+        try:
+            os.fsync(handle)
+        finally:
+            os.close(handle)
 
 
 def _umask() -> int:

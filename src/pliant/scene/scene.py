@@ -13,6 +13,7 @@ from numpy.typing import ArrayLike, NDArray
 from pliant.errors import InvalidParameter
 from pliant.mesh import PolygonMesh
 from pliant.numerics.ragged import frozen
+from pliant.scene.clip import Clip
 from pliant.scene.stack import Stack
 
 
@@ -27,7 +28,8 @@ class Scene:
     stack
         What deforms it.
     clip
-        How it moves in time; None where it does not.
+        How it moves in time; None where it does not. It is put on this mesh and this stack: keys of layers that are
+        not there are left out.
     selections
         Vertices by name.
 
@@ -39,12 +41,14 @@ class Scene:
 
     mesh: PolygonMesh
     stack: Stack = field(default_factory=Stack)
-    clip: Any = None
+    clip: Clip | None = None
     selections: Mapping[str, ArrayLike] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         kept = {name: _checked(name, chosen, len(self.mesh.points)) for name, chosen in self.selections.items()}
         object.__setattr__(self, "selections", MappingProxyType(kept))
+        if self.clip is not None and (self.clip.mesh is not self.mesh or self.clip.stack is not self.stack):
+            object.__setattr__(self, "clip", self.clip.on(self.mesh, self.stack))
 
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self), (self.mesh, self.stack, self.clip, dict(self.selections))

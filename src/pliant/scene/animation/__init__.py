@@ -1,0 +1,1 @@
+"""Formats of moving meshes: one a file."""

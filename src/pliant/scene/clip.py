@@ -1,0 +1,237 @@
+"""Clip: a stack over time."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from pliant.errors import InvalidParameter
+from pliant.io.report import LossReport
+from pliant.mesh import Points, PolygonMesh
+from pliant.scene.easing import Easing
+from pliant.scene.keyed import checked_value, keyed_layer
+from pliant.scene.sequence import MeshSequence
+from pliant.scene.stack import Stack
+from pliant.scene.stack_binding import StackBinding
+from pliant.scene.track import Key, Track
+
+Ending = Literal["once", "loop", "ping-pong"]
+Progress = Callable[[int, int], None]
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """One picture of a clip: its time in seconds, and (n, 3) points, read-only."""
+
+    time: float
+    points: Points
+
+
+@dataclass(frozen=True, eq=False)
+class Clip:
+    """A mesh under a stack whose values have keys in time. Every edit gives another clip.
+
+    Parameters
+    ----------
+    mesh, stack
+        What moves, and how it is deformed where no key says otherwise.
+    duration
+        Seconds; positive.
+    fps
+        Frames a second; positive.
+    tracks
+        The keys, see :meth:`key`.
+    ending
+        ``"once"``: it ends at the duration. ``"loop"``: it begins anew; the last frame is the first again.
+        ``"ping-pong"``: it goes back; a period is twice the duration.
+    intensity
+        How much of all deformation there is: displacements are multiplied by it.
+    motion
+        A motion that the mesh has without the stack, which then deforms each of its frames.
+    amplify
+        How much that motion is exaggerated, away from the mesh at rest.
+
+    Raises
+    ------
+    InvalidParameter
+        An empty clip, values that are not finite, tracks of layers that are not there, a motion of another mesh.
+    """
+
+    mesh: PolygonMesh
+    stack: Stack
+    duration: float = 1.0
+    fps: float = 24.0
+    tracks: tuple[Track, ...] = ()
+    ending: Ending = "once"
+    intensity: float = 1.0
+    motion: MeshSequence | None = None
+    amplify: float = 1.0
+
+    def __post_init__(self) -> None:
+        for name in ("duration", "fps"):
+            if not 0 < float(getattr(self, name)) < np.inf:
+                raise InvalidParameter(f"the clip is empty: its {name} is {getattr(self, name)}; it must be positive")
+        for name in ("intensity", "amplify"):
+            if not np.isfinite(float(getattr(self, name))):
+                raise InvalidParameter(f"the clip's {name} is {getattr(self, name)}; it must be finite")
+        if self.ending not in ("once", "loop", "ping-pong"):
+            raise InvalidParameter(f"a clip ends by 'once', 'loop' or 'ping-pong', not {self.ending!r}")
+        if self.motion is not None and self.motion.count != len(self.mesh.points):
+            raise InvalidParameter(
+                f"the motion is one of {self.motion.count:,} points; the mesh has {len(self.mesh.points):,}"
+            )
+        object.__setattr__(self, "tracks", tuple(self.tracks))
+        seen: set[tuple[str, str]] = set()
+        for track in self.tracks:
+            if (track.layer, track.field) in seen:
+                raise InvalidParameter(f"{track.field!r} of layer {track.layer!r} has two tracks: join their keys")
+            seen.add((track.layer, track.field))
+            for key in track.keys:
+                checked_value(self.stack[track.layer], track.field, key.value)
+
+    def key(
+        self, layer: str, time: float, values: Mapping[str, Any], easing: Easing | Sequence[float] = "linear"
+    ) -> Clip:
+        """The clip with one more key.
+
+        Parameters
+        ----------
+        layer
+            The layer's name.
+        time
+            In seconds.
+        values
+            By name: fields of the deformer that are numbers, as ``{"angle": 1.5}``; ``"controls"``, all of them, shaped
+            as the deformer's; ``"envelope"``; ``"muted"``; or ``"frame"``, an :class:`~pliant.space.affine.Affine`
+            by which the deformer moves over the object.
+        easing
+            How the values are reached from the key before: ``"step"``, ``"linear"``, ``"cubic"`` (a curve through the
+            keys), ``"smooth"``, ``"ease_in_out"`` and others, or the handles (x1, y1, x2, y2) of a Bézier curve.
+
+        Raises
+        ------
+        InvalidParameter
+            No such layer or field, a value of another shape, an unknown easing.
+        """
+        tracks = {(track.layer, track.field): track for track in self.tracks}
+        for field, value in values.items():
+            checked = checked_value(self.stack[layer], field, value)
+            given = easing if isinstance(easing, str) else tuple(easing)
+            key = Key(time, checked, given)  # type: ignore[arg-type]
+            track = tracks.get((layer, field))
+            tracks[layer, field] = Track(layer, field, (key,)) if track is None else track.with_key(key)
+        return replace(self, tracks=tuple(tracks.values()))
+
+    def without_key(self, layer: str, field: str, time: float) -> Clip:
+        """The clip without a key; a track without keys is gone.
+
+        Raises
+        ------
+        InvalidParameter
+            There is no such key.
+        """
+        found = [track for track in self.tracks if (track.layer, track.field) == (layer, field)]
+        if not found:
+            raise InvalidParameter(f"{field!r} of layer {layer!r} has no keys")
+        changed = [track.without(time) if track is found[0] else track for track in self.tracks]
+        return replace(self, tracks=tuple(track for track in changed if track is not None))
+
+    def on(self, mesh: PolygonMesh, stack: Stack) -> Clip:
+        """The clip with another mesh and stack; keys of layers that are not there any more are left out."""
+        tracks = tuple(track for track in self.tracks if track.layer in stack.names)
+        return replace(self, mesh=mesh, stack=stack, tracks=tracks)
+
+    @property
+    def period(self) -> float:
+        """Seconds after which it has been all through."""
+        return 2 * self.duration if self.ending == "ping-pong" else self.duration
+
+    @property
+    def times(self) -> tuple[float, ...]:
+        """The times of its frames: of a clip that returns to its beginning, each moment once."""
+        count = max(1, round(self.period * self.fps))
+        last = count + 1 if self.ending == "once" else count
+        return tuple(min(i / self.fps, self.period) for i in range(last))
+
+    def stack_at(self, time: float) -> Stack:
+        """The stack as the keys say at a time."""
+        moment, stack = self._moment(time), self.stack
+        for name in dict.fromkeys(track.layer for track in self.tracks):
+            values = {track.field: track.at(moment) for track in self.tracks if track.layer == name}
+            stack = stack._exchanged(name, keyed_layer(stack[name], values))
+        return stack
+
+    def sample(self, time: float) -> PolygonMesh:
+        """The mesh at a time, its normals too."""
+        points = self._points(self._binding(), time)
+        if self.motion is None and self.intensity == 1.0:
+            return self.mesh.with_points(points, normals=self.stack_at(time)._normals(self.mesh, points))
+        from pliant.surface.shading import shading_normals
+
+        return self.mesh.with_points(points, normals=shading_normals(self.mesh, points))
+
+    def frames(self, progress: Progress | None = None) -> Iterator[Frame]:
+        """Every frame, one after another.
+
+        Parameters
+        ----------
+        progress
+            Called with how many frames are done, and how many there are.
+        """
+        binding, times = self._binding(), self.times
+        for done, time in enumerate(times, start=1):
+            points = self._points(binding, time)
+            if progress is not None:
+                progress(done, len(times))
+            yield Frame(time, points)
+
+    def sequence(self, progress: Progress | None = None) -> MeshSequence:
+        """All frames at once, as another clip's motion, or to be written."""
+        frames = list(self.frames(progress))
+        return MeshSequence(np.stack([frame.points for frame in frames]), [frame.time for frame in frames])
+
+    def export(self, path: Path | str, *, progress: Progress | None = None, **options: Any) -> LossReport:
+        """Write the clip: ``.glb``, ``.gltf``, ``.usd``, ``.pc2``, ``.mdd``, ``.pvd``, ``.abc``, ``.mp4`` or ``.gif``.
+
+        Parameters
+        ----------
+        path
+            Its ending says the format.
+        progress
+            As for :meth:`frames`.
+        options
+            The format's own; films take those of :func:`pliant.render`, and ``turns``.
+
+        Raises
+        ------
+        UnsupportedFormat
+            No format of animations has that ending.
+        """
+        from pliant.scene.animation.formats import export_clip
+
+        return export_clip(self, path, progress=progress, **options)
+
+    def _moment(self, time: float) -> float:
+        """The time in the keys' own count."""
+        if self.ending == "once":
+            return min(max(float(time), 0.0), self.duration)
+        moment = float(time) % self.period
+        return self.period - moment if moment > self.duration else moment
+
+    def _binding(self) -> StackBinding:
+        return self.stack_at(0.0).bind(self.mesh)
+
+    def _points(self, binding: StackBinding, time: float) -> Points:
+        base: ArrayLike | None = None
+        if self.motion is not None:
+            frame = self.motion.at(self._moment(time))
+            base = frame if self.amplify == 1.0 else self.mesh.points + self.amplify * (frame - self.mesh.points)
+        result = binding.updated(self.stack_at(time), base)
+        if self.intensity == 1.0:
+            return result.result
+        return np.asarray(result.points + self.intensity * (result.result - result.points))
