@@ -27,6 +27,7 @@ WHOLE = {"errors", "deformer"}  # modules shown whole, on pages of their own
 ROOMS = {
     "": "Meshes and files",
     "space": "Deformers of space",
+    "cages": "Building cages",
     "surface": "Deformers of surfaces",
     "shape": "Shape models",
     "field": "Looking at a deformation",

@@ -1,0 +1,1 @@
+"""Cages around meshes: built automatically or by hand, and checked."""

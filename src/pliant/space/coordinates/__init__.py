@@ -1,0 +1,1 @@
+"""Coordinates of points with respect to a cage, one kind a file."""
