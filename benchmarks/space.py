@@ -51,10 +51,12 @@ def bspline_comparisons() -> list[Comparison]:
                 "splinepy": splinepy_bspline(moves[0], lattice),
                 "a copy of the points": POINTS.copy,
             },
+            repeat=3,
         ),
         Comparison(
-            "the same, bound: all control points moved",
+            "the same, bound: all control points moved, ten moves in a row",
             {"pliant": lambda: bound.deform(moves[1], out=out), "VTK": vtk_again},
+            repeat=10,
         ),
         Comparison(
             "the same, bound: one control point moved, twenty moves in a row",

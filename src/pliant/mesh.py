@@ -239,7 +239,7 @@ class PolygonMesh:
         return f"<table><caption>PolygonMesh</caption>{body}</table>"
 
 
-def as_points(target: PolygonMesh | ArrayLike, *, borrow: bool = False) -> Points:
+def as_points(target: PolygonMesh | ArrayLike, *, borrow: bool = False, finite: bool = True) -> Points:
     """(n, 3) finite, C-ordered positions of a mesh or of anything that reads as points.
 
     Parameters
@@ -249,6 +249,8 @@ def as_points(target: PolygonMesh | ArrayLike, *, borrow: bool = False) -> Point
     borrow
         Whether the caller's own array will do, for a use that ends before the caller can change it; else the
         result is read-only for good.
+    finite
+        Whether to look for coordinates that are not finite; False where the caller does.
 
     Raises
     ------
@@ -262,7 +264,8 @@ def as_points(target: PolygonMesh | ArrayLike, *, borrow: bool = False) -> Point
         points = points.reshape(0, 3)
     if points.ndim != 2 or points.shape[1] != 3:
         raise InvalidMesh(f"points have shape {points.shape}; (n, 3) is needed")
-    _require_finite(points)
+    if finite:
+        _require_finite(points)
     return np.ascontiguousarray(points) if borrow else frozen(points, np.float64)
 
 

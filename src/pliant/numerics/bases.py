@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pliant.numerics.chunks import for_chunks
+from pliant.numerics.ragged import source
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -54,8 +55,8 @@ class BernsteinPoints:
         from pliant.numerics import bernstein as compiled
 
         counts = [binomials(size - 1) for size in lattice.shape[:3]]
-        flat, target = np.ascontiguousarray(lattice).reshape(-1), out.reshape(-1)
-        points, base = self.points.reshape(-1), base.reshape(-1)
+        flat, target = source(np.ascontiguousarray(lattice).reshape(-1)), out.reshape(-1)
+        points, base = source(self.points.reshape(-1)), source(base.reshape(-1))
 
         def work(start: int, stop: int) -> None:
             compiled.evaluate(points, start, stop, self._frame, self._keep, *counts, flat, base, target)

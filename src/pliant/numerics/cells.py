@@ -7,9 +7,11 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from numpy.lib.stride_tricks import sliding_window_view
 from numpy.typing import NDArray
 
 from pliant.numerics.chunks import for_chunks
+from pliant.numerics.ragged import source
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -55,6 +57,11 @@ class CellGrid:
         """(3,) numbers of control values along each axis."""
         return np.asarray((self.counts - 1) * self.stride + 4, np.int64)
 
+    def powers(self, lattice: Floats) -> Floats:
+        """A lattice (x, y, z, 3) as cubic polynomials along z: flat, of shape (x, y, cells along z, 3, 4)."""
+        windows = sliding_window_view(lattice, 4, axis=2)[:, :, :: self.stride]
+        return np.asarray(windows.reshape(-1, 4) @ self.basis.T).reshape(-1)
+
 
 class CellPoints:
     """Points sorted by cell; evaluates tensor products, their derivatives and their transpose there.
@@ -74,17 +81,16 @@ class CellPoints:
         count, cells = len(points), int(grid.counts.prod())
         self._chunk = max(CHUNK, 4 * cells)
         self._order = np.empty(count, np.int32)
-        self._rank = np.empty(count, np.int32)
         self._local = np.empty(3 * (count + 8))
         self._local.reshape(3, -1)[:, count:] = 0.0  # lanes beyond the last point compute too
         self._starts = np.empty((-(-count // self._chunk), cells + 2), np.int64)
-        flat = points.reshape(-1)
+        flat = source(points.reshape(-1))
 
         def work(start: int, stop: int) -> None:
             starts = self._starts[start // self._chunk]
             tricubic.locate(
                 flat, start, stop, grid.frame, grid.limits, grid.keep, grid.counts,
-                self._order, self._rank, self._local, starts,
+                self._order, self._local, starts,
             )  # fmt: skip
 
         for_chunks(work, count, self._chunk)
@@ -104,12 +110,12 @@ class CellPoints:
 
         grid = self.grid
         cells = np.arange(grid.counts.prod()) if chosen is None else chosen
-        flat, base, out = lattice.reshape(-1), base.reshape(-1), out.reshape(-1)
+        powers, base, out = grid.powers(lattice), source(base.reshape(-1)), out.reshape(-1)
 
         def work(first: int, starts: Integers) -> None:
             tricubic.evaluate(
-                first, starts, self._order, self._rank, self._local, grid.counts, grid.stride, grid.basis,
-                flat, grid.shape, cells, base, out,
+                first, starts, self._order, self._local, grid.counts, grid.stride, grid.basis,
+                powers, grid.shape, cells, base, out,
             )  # fmt: skip
 
         self._each_chunk(work)
@@ -119,7 +125,7 @@ class CellPoints:
         from pliant.numerics import tricubic
 
         grid, out = self.grid, np.empty((len(self.points), 3, 3))
-        flat, target = lattice.reshape(-1), out.reshape(-1)
+        flat, linear, target = source(lattice.reshape(-1)), source(linear), out.reshape(-1)
 
         def work(first: int, starts: Integers) -> None:
             tricubic.differentiate(
@@ -137,7 +143,7 @@ class CellPoints:
         grid = self.grid
         groups = min(8, len(self._starts))  # partial sums that do not depend on the threads, hence reproducible
         sums = np.zeros((groups, *grid.shape, 3))
-        flat = np.ascontiguousarray(values, np.float64).reshape(-1)
+        flat = source(np.ascontiguousarray(values, np.float64).reshape(-1))
 
         def work(start: int, stop: int) -> None:
             for group in range(start, stop):
@@ -151,7 +157,7 @@ class CellPoints:
         return np.asarray(sums.sum(axis=0))
 
     def column(self, selected: tuple[Floats, Floats, Floats]) -> tuple[NDArray[np.int32], Floats]:
-        """The points that one control reaches, and its weight at each.
+        """The points that one control reaches, ascending within each chunk, and its weight at each.
 
         Parameters
         ----------
@@ -220,27 +226,40 @@ class CellPoints:
         for_chunks(lambda start, _stop: work(start, self._starts[start // self._chunk]), len(self.points), self._chunk)
 
 
-def evaluate_once(grid: CellGrid, points: Floats, lattice: Floats, base: Floats, out: Floats) -> None:
-    """As :meth:`CellPoints.evaluate`, for one use: a chunk is sorted and evaluated while it is in the cache."""
-    from pliant.numerics import tricubic
+def evaluate_once(grid: CellGrid, points: Floats, lattice: Floats, base: Floats, out: Floats) -> bool:
+    """As :meth:`CellPoints.evaluate`, for one use; the points may be what they like.
 
-    cells = np.arange(grid.counts.prod())
-    flat, shape = lattice.reshape(-1), grid.shape
+    Returns
+    -------
+    bool
+        True where all points are finite; False where any is not, or their sums overflow.
+    """
+    from pliant.numerics.tricubic_sweep import sweep
+
+    x, y, z = lattice.shape[:3]
+    shape = np.array([x, y, z + z % 2], np.int64)
+    twice = _on_cache_lines((2, *shape, 4))
+    twice[0, :, :, :z, :3], twice[1, :, :, : z - 1, :3] = lattice, lattice[:, :, 1:]
+    flat, rows, base, target = source(points.reshape(-1)), twice.reshape(-1), source(base.reshape(-1)), out.reshape(-1)
+    checks = []
 
     def work(start: int, stop: int) -> None:
-        count = stop - start
-        order, rank = np.empty(count, np.int32), np.empty(count, np.int32)
-        local, starts = np.zeros(3 * (count + 8)), np.empty(len(cells) + 2, np.int64)
-        tricubic.locate(
-            points[start:stop].reshape(-1), 0, count, grid.frame, grid.limits, grid.keep, grid.counts,
-            order, rank, local, starts,
+        check = sweep(
+            flat, start, stop, grid.frame, grid.limits, grid.keep, grid.counts, grid.stride, grid.basis,
+            rows, shape, base, target,
         )  # fmt: skip
-        tricubic.evaluate(
-            0, starts, order, rank, local, grid.counts, grid.stride, grid.basis,
-            flat, shape, cells, base[start:stop].reshape(-1), out[start:stop].reshape(-1),
-        )  # fmt: skip
+        checks.append(check)
 
-    for_chunks(work, len(points), max(CHUNK, 4 * len(cells)))
+    for_chunks(work, len(points), min(max(len(points) // 8, 8_192), 131_072))
+    return not np.isnan(checks).any()
+
+
+def _on_cache_lines(shape: tuple[int, ...]) -> Floats:
+    """An array of zeros that begins where a cache line of 64 bytes does."""
+    size = int(np.prod(shape))
+    room = np.zeros(size + 8)
+    start = -(room.ctypes.data // 8) % 8
+    return room[start : start + size].reshape(shape)
 
 
 def shift_points(points: NDArray[np.int32], weights: Floats, anchors: Floats, step: Floats, out: Floats) -> None:
@@ -252,4 +271,4 @@ def shift_points(points: NDArray[np.int32], weights: Floats, anchors: Floats, st
     def work(start: int, stop: int) -> None:
         tricubic.shift(start, stop, points, weights, base, step, flat)
 
-    for_chunks(work, len(points), 32_768)
+    for_chunks(work, len(points), 131_072)  # memory sets the pace: a second thread gains on many points only

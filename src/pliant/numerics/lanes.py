@@ -213,6 +213,31 @@ def put(_typing: Any, array: Any, index: Any, value: Any) -> Any:
 
 
 @intrinsic
+def spread_halves(_typing: Any, low: Any, high: Any) -> Any:
+    """One float in the first four lanes, another in the last four."""
+
+    def generate(_context: Any, builder: Any, _signature: Any, args: Any) -> Any:
+        low, high = (_spread(builder, arg) for arg in args)
+        picks = ir.Constant(ir.VectorType(ir.IntType(32), WIDTH), [0, 1, 2, 3, 12, 13, 14, 15])
+        return builder.shuffle_vector(low, high, picks)
+
+    return lanes(types.float64, types.float64), generate
+
+
+@intrinsic
+def store_sum_of_halves(_typing: Any, array: Any, index: Any, value: Any) -> Any:
+    """Write four consecutive elements: the first four lanes plus the last four."""
+
+    def generate(context: Any, builder: Any, _signature: Any, args: Any) -> Any:
+        total = _sum_of_halves(builder, args[2], WIDTH // 2)
+        start = builder.bitcast(_address(context, builder, array, *args[:2]), total.type.as_pointer())
+        builder.store(total, start, align=8)
+        return context.get_dummy_value()
+
+    return types.void(array, types.intp, lanes), generate
+
+
+@intrinsic
 def total(_typing: Any, value: Any) -> Any:
     """The sum over the lanes, halves first."""
 
@@ -220,14 +245,18 @@ def total(_typing: Any, value: Any) -> Any:
         vector, width = args[0], WIDTH
         while width > 1:
             width //= 2
-            picks = [list(range(width)), list(range(width, 2 * width))]
-            undefined = ir.Constant(vector.type, ir.Undefined)
-            mask = ir.VectorType(ir.IntType(32), width)
-            low, high = (builder.shuffle_vector(vector, undefined, ir.Constant(mask, pick)) for pick in picks)
-            vector = builder.fadd(low, high, flags=_FUSED)
+            vector = _sum_of_halves(builder, vector, width)
         return builder.extract_element(vector, ir.Constant(ir.IntType(32), 0))
 
     return types.float64(lanes), generate
+
+
+def _sum_of_halves(builder: Any, vector: Any, width: int) -> Any:
+    """The first ``width`` elements of a vector plus the next ones."""
+    undefined, mask = ir.Constant(vector.type, ir.Undefined), ir.VectorType(ir.IntType(32), width)
+    picks = (list(range(width)), list(range(width, 2 * width)))
+    low, high = (builder.shuffle_vector(vector, undefined, ir.Constant(mask, pick)) for pick in picks)
+    return builder.fadd(low, high, flags=_FUSED)
 
 
 def _address(context: Any, builder: Any, array_type: Any, array: Any, index: Any) -> Any:

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from pliant.numerics.cells import CellGrid
 from pliant.numerics.chunks import for_chunks
+from pliant.numerics.ragged import source
 
 Floats = NDArray[np.float64]
 
@@ -50,14 +51,16 @@ class LatticeNewton:
         from pliant.numerics import lattice_newton, tricubic
 
         grid, left, back = self._grid, len(images), np.linalg.inv(self._affine)
-        active, order, rank = (np.arange(left, dtype=np.int32) for _ in range(3))
+        active, order = (np.arange(left, dtype=np.int32) for _ in range(2))
         local, starts = np.zeros(3 * (left + 8)), np.empty(int(grid.counts.prod()) + 2, np.int64)
         state = np.zeros((left, lattice_newton.RECORD))
         state[:, :3], state[:, lattice_newton.LEAST] = images, np.inf
         trial = images.copy() if np.array_equal(back, np.eye(4)) else images @ back[:3, :3].T + back[:3, 3]
         trial, records = trial.reshape(-1), state.reshape(-1)
         for _ in range(iterations + 1):
-            tricubic.locate(trial, 0, left, grid.frame, grid.limits, grid.keep, grid.counts, order, rank, local, starts)
+            tricubic.locate(
+                source(trial), 0, left, grid.frame, grid.limits, grid.keep, grid.counts, order, local, starts
+            )
             left = lattice_newton.advance(
                 starts, order, local, grid.frame, grid.counts, grid.stride, grid.basis, self._lattice, grid.shape,
                 self._affine, accepted, active, trial, records,

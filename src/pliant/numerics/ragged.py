@@ -27,6 +27,13 @@ def frozen(array: ArrayLike, dtype: Any) -> NDArray[Any]:
     return result
 
 
+def source(array: NDArray[Any]) -> NDArray[Any]:
+    """A read-only view: what kernels read then has one type, and they are compiled once."""
+    view = array.view()
+    view.flags.writeable = False
+    return view
+
+
 def _copied(array: NDArray[Any]) -> NDArray[Any]:
     """A C-ordered copy; large ones by all processors, since fresh memory is slow to touch."""
     result = np.empty(array.shape, array.dtype)

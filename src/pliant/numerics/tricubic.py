@@ -9,9 +9,9 @@ Arguments that the kernels share:
 ``first, starts``
     Place of the chunk's first point; (cells + 2,) where each cell's run begins in the chunk. The last run holds the
     points that no cell owns.
-``order, rank, local``
-    (n,) which point stands at each sorted place; (n,) the inverse, counted from the chunk's first; (3 * (n + 8),)
-    the sorted points' coordinates in their cells, one axis after another.
+``order, local``
+    (n,) which point stands at each sorted place; (3 * (n + 8),) the sorted points' coordinates in their cells, one
+    axis after another.
 ``grid, stride, basis``
     (3,) numbers of cells; control points from one cell to the next (1 for B-splines, 3 for Bézier patches);
     (4, 4) coefficient of power p in basis function b at [p, b].
@@ -40,7 +40,7 @@ from pliant.numerics.lanes import (
 
 
 @kernel
-def locate(points, first, stop, frame, limits, keep, grid, order, rank, local, starts):
+def locate(points, first, stop, frame, limits, keep, grid, order, local, starts):
     """Sort one chunk of points by cell: a stable counting sort.
 
     ``frame`` (3, 4) maps positions to grid coordinates; they are clamped to ``limits`` (2, 3), and a point beyond
@@ -76,7 +76,6 @@ def locate(points, first, stop, frame, limits, keep, grid, order, rank, local, s
         cell = int(get(cell_of, n))
         at = place[cell]
         place[cell] = at + 1
-        rank[first + n] = at
         order[first + at] = first + n
     for at in range(first, stop):  # gathered, so that what is written to memory is written in sequence
         n = 3 * (get(order, at) - first)
@@ -124,35 +123,65 @@ def _cube(lattice, at, down_x, down_y, table, x, y, z):
     return cube
 
 
+@inlined
+def _along_z(powers, at, t):
+    """A cubic polynomial of eight parameters, from four coefficients."""
+    return ((t * get(powers, at + 3) + get(powers, at + 2)) * t + get(powers, at + 1)) * t + get(powers, at)
+
+
+@inlined
+def _cubes(powers, corner, down_x, down_y, table, t):
+    """The three sums over 4 x 4 polynomials along z; the table begins with the factors along x, then y."""
+    x, y, z = spread(0.0), spread(0.0), spread(0.0)
+    for i in range(4):
+        u, v, w = spread(0.0), spread(0.0), spread(0.0)
+        for j in range(4):
+            p, weight = corner + i * down_x + j * down_y, load(table, 32 + 8 * j)
+            u = u + weight * _along_z(powers, p, t)
+            v = v + weight * _along_z(powers, p + 4, t)
+            w = w + weight * _along_z(powers, p + 8, t)
+        weight = load(table, 8 * i)
+        x, y, z = x + weight * u, y + weight * v, z + weight * w
+    return x, y, z
+
+
 @kernel
-def evaluate(first, starts, order, rank, local, grid, stride, basis, lattice, shape, chosen, base, out):
+def evaluate(first, starts, order, local, grid, stride, basis, powers, shape, chosen, base, out):
     """out = base + the tensor product, at one chunk's points in the chosen cells.
 
-    Where all cells are chosen, points that belong to none get their base.
+    ``powers``, flat, of shape (x, y, cells along z, 3, 4): the lattice as cubic polynomials along z, coefficients of
+    the powers 0 to 3. Where all cells are chosen, points that belong to none get their base.
     """
     length, cells = len(local) // 3, len(starts) - 2
-    moved, table, piece = np.empty(3 * (starts[cells + 1] + 8)), np.empty(96), np.empty(24)
-    down_x, down_y = shape[1] * shape[2] * 3, shape[2] * 3
+    moved, table, piece = np.empty(3 * starts[cells + 1]), np.empty(64), np.empty(24)
+    down_x, down_y = shape[1] * grid[2] * 12, grid[2] * 12
     for cell in chosen:
-        corner = _corner(cell, grid, stride, shape)
-        for at in range(first + starts[cell], first + starts[cell + 1], 8):
-            for axis in range(3):
-                _tabulate(table, 32 * axis, basis, load(local, axis * length + at))
-            for c in range(3):
-                store(piece, 8 * c, _cube(lattice, corner + c, down_x, down_y, table, 0, 32, 64))
-            store_triples(moved, 3 * (at - first), load(piece, 0), load(piece, 8), load(piece, 16))
+        k, rest = cell % grid[2], cell // grid[2]
+        corner = ((rest // grid[1] * shape[1] + rest % grid[1]) * stride * grid[2] + k) * 12
+        stop = first + starts[cell + 1]
+        for at in range(first + starts[cell], stop, 8):
+            _tabulate(table, 0, basis, load(local, at))
+            _tabulate(table, 32, basis, load(local, length + at))
+            x, y, z = _cubes(powers, corner, down_x, down_y, table, load(local, 2 * length + at))
+            store(piece, 0, x)
+            store(piece, 8, y)
+            store(piece, 16, z)
+            for i in range(min(8, stop - at)):
+                n = 3 * (get(order, at + i) - first)
+                for c in range(3):
+                    put(moved, n + c, get(piece, 8 * c + i))
     if len(chosen) < cells:
         for cell in chosen:
-            for at in range(starts[cell], starts[cell + 1]):
-                n = 3 * get(order, first + at)
+            for at in range(first + starts[cell], first + starts[cell + 1]):
+                n = 3 * get(order, at)
                 for c in range(3):
-                    put(out, n + c, get(base, n + c) + get(moved, 3 * at + c))
+                    put(out, n + c, get(base, n + c) + get(moved, n + c - 3 * first))
         return
-    for n in range(first, first + starts[cells + 1]):  # in the points' own order: memory is passed in sequence
-        at = get(rank, n)
+    for at in range(first + starts[cells], first + starts[cells + 1]):
         for c in range(3):
-            shift = get(moved, 3 * at + c) if at < starts[cells] else 0.0
-            put(out, 3 * n + c, get(base, 3 * n + c) + shift)
+            put(moved, 3 * (get(order, at) - first) + c, 0.0)
+    for n in range(len(moved)):  # in the points' own order: memory is passed in sequence
+        put(out, 3 * first + n, get(base, 3 * first + n) + get(moved, n))
 
 
 @kernel
@@ -223,11 +252,13 @@ def gather(first, starts, order, local, grid, stride, basis, shape, values, latt
 def column(first, starts, order, local, grid, along_x, along_y, along_z, chosen, at, points, weights):
     """The weights that one control value has at the points of the chosen cells, written from place ``at`` on.
 
+    The points come in ascending order: passing over them is then passing over memory in sequence.
+
     ``along_x`` (cells + 1, 4) and so on: the coefficients, lowest power first, of the control's basis function in
     each cell of that axis.
     """
-    length = len(local) // 3
-    piece = np.empty(8)
+    length, count = len(local) // 3, starts[len(starts) - 1]
+    piece, reached = np.empty(8), np.full(count, np.nan)  # the weight of each point that is reached
     for cell in chosen:
         k, rest = cell % grid[2], cell // grid[2]
         i, j = rest // grid[1], rest % grid[1]
@@ -241,9 +272,12 @@ def column(first, starts, order, local, grid, along_x, along_y, along_z, chosen,
             )
             store(piece, 0, weight)
             for lane in range(min(8, stop - place)):
-                points[at] = order[place + lane]
-                weights[at] = piece[lane]
-                at += 1
+                reached[order[place + lane] - first] = piece[lane]
+    for n in range(count):
+        if not np.isnan(reached[n]):
+            points[at] = first + n
+            weights[at] = reached[n]
+            at += 1
 
 
 @kernel

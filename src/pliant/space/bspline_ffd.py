@@ -155,9 +155,11 @@ class BSplineFFD(SpaceDeformer):
         return LatticeBinding(sampled, self._padding, self.rest, self.displacements, base)
 
     def _deformed(self, target: Target) -> Points:
-        points = as_points(target, borrow=True)
+        points = as_points(target, borrow=True, finite=False)
         out = np.empty_like(points)
-        evaluate_once(self._grid, points, self._padding.values(self.displacements), self._base(points), out)
+        values = self._padding.values(self.displacements)
+        if not evaluate_once(self._grid, points, values, self._base(points), out):
+            as_points(target)  # says which points are not finite
         return out
 
     def _base(self, points: Points) -> Points:
