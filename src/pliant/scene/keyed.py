@@ -60,6 +60,11 @@ def keyed_layer(layer: Layer, values: Mapping[str, Floats]) -> Layer:
     return layer.changed(deformer=deformer, **changes) if changes or deformer is not layer.deformer else layer
 
 
+def tool_of(deformer: Deformer) -> Deformer:
+    """What is placed, or the deformer itself."""
+    return deformer.deformer if isinstance(deformer, Placed) else deformer
+
+
 def _with_fields(deformer: Deformer, values: Mapping[str, Floats], layer: Layer) -> Deformer:
     """The deformer with other numbers; of a placed one, those of the tool."""
     if isinstance(deformer, Placed):

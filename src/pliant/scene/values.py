@@ -24,6 +24,7 @@ Arrays = dict[str, NDArray[Any]]
 Opaque = Callable[[Any], str]
 
 INLINE = 16  # numbers: arrays of no more stand in the data itself
+_DTYPES = {name: np.dtype(name) for name in ("bool", "int32", "int64", "uint8", "float32", "float64")}
 SKIPPED = ("carrier",)  # what a reader kept of a file: not part of what a thing is
 
 
@@ -90,6 +91,8 @@ def decode(data: Any, arrays: Mapping[str, NDArray[Any]]) -> Any:
         return data
     if "array" in data:
         return _stored(data, arrays)
+    if data == {"none": True}:
+        return None
     if "float" in data:
         return float(data["float"])
     if "path" in data:
@@ -143,8 +146,8 @@ def _stored(data: dict[str, Any], arrays: Mapping[str, NDArray[Any]]) -> NDArray
     name = data["array"]
     if isinstance(name, list):
         try:
-            return np.array(name, np.float64)
-        except (TypeError, ValueError) as error:
+            return np.array(name, _DTYPES[data.get("dtype", "float64")])
+        except (TypeError, ValueError, KeyError) as error:
             raise InvalidParameter(f"an array is not one of numbers: {error}") from error
     if name not in arrays:
         raise InvalidParameter(f"the array {name!r} is missing")
