@@ -1,6 +1,8 @@
+from .cages.boxes import cage_from_box as cage_from_box
 from .cages.building import build_cage as build_cage
 from .cages.checking import CageReport as CageReport
 from .cages.checking import check_cage as check_cage
+from .cages.own import cage_from_mesh as cage_from_mesh
 from .errors import PliantError as PliantError
 from .errors import PliantWarning as PliantWarning
 from .face.dense import dense_face as dense_face
@@ -28,6 +30,8 @@ from .field.vectors import Arrows as Arrows
 from .field.vectors import arrows as arrows
 from .field.volumes import volume as volume
 from .field.volumes import volume_gradient as volume_gradient
+from .io.cage_weights import read_binding as read_binding
+from .io.cage_weights import write_binding as write_binding
 from .io.conversion import convert_transform as convert_transform
 from .io.images import Image as Image
 from .io.images import read_image as read_image

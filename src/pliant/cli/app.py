@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+from pliant.cli.cage import cage
 from pliant.cli.check import check
 from pliant.cli.convert import convert
 from pliant.cli.deform import deform
@@ -29,7 +30,7 @@ app = typer.Typer(
     pretty_exceptions_enable=False,  # bugs are reported by the entry point
     epilog=EXPLAINED,
 )
-for command in (deform, warp, edit, skeleton, smooth, transfer, info, check, convert, render, face, demo):
+for command in (deform, warp, edit, skeleton, smooth, transfer, cage, info, check, convert, render, face, demo):
     app.command(cls=DeformingCommand if command in (deform, render) else None)(command)
 
 app.add_typer(model, name="model")

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import typer
 
+from pliant.cli.cage import CageChoice
 from pliant.cli.deformer_options import BASES, Step, made
 from pliant.cli.free_lattices import FreeLattice, site_move
 from pliant.cli.options import Edge, MeshSpace, Placement, Variant, lattice_move, lattice_shape, three_numbers
@@ -34,6 +35,7 @@ class Choice:
     mesh_space: MeshSpace = MeshSpace.as_is
     steps: tuple[Step, ...] = ()
     tool: FreeLattice | None = None
+    cage: CageChoice | None = None
 
     def deformer(self, mesh: PolygonMesh) -> SpaceDeformer | None:
         """The deformer, in the space of the mesh; None where no option asks for one.
@@ -48,9 +50,11 @@ class Choice:
         if self.tool is not None and (self.ffd is not None or self.lattice is not None):
             other = "--lattice" if self.ffd is None else "--ffd"
             raise typer.BadParameter(f"give one of {other} and {self.tool.option}", param_hint=self.tool.option)
+        if self.cage is not None and (self.ffd is not None or self.lattice is not None or self.tool is not None):
+            raise typer.BadParameter("give a cage or a lattice, not both", param_hint="--cage")
         base = self._base(mesh)
         if base is None and (self.moves or (self.inverse and not self.steps)):
-            raise typer.BadParameter("there is nothing to move or invert: add --ffd or --lattice")
+            raise typer.BadParameter("there is nothing to move or invert: add --ffd, --lattice or --cage")
         found = self._composed(base, mesh)
         if found is not None and self.inverse:
             from pliant.space.inverse import Inverse
@@ -63,12 +67,15 @@ class Choice:
         found = self.deformer(mesh)
         if found is None:
             raise typer.BadParameter(
-                "say how to deform: --ffd FILE, --lattice NxNxN with --move, or --twist angle=90 ..."
+                "say how to deform: --ffd FILE, --lattice NxNxN with --move, --cage FILE with --posed FILE, "
+                "or --twist angle=90 ..."
             )
         return found
 
     def _base(self, mesh: PolygonMesh) -> SpaceDeformer | None:
         """The lattice or the file's transform, moved and turned as asked for."""
+        if self.cage is not None:
+            return self.cage.made() if not self.moves else _moved(self.cage.made(), self.moves)
         if self.ffd is None and self.lattice is None and self.tool is None:
             return None
         found = self._read(mesh) if self.ffd is not None else self._new(mesh)

@@ -9,6 +9,7 @@ import typer
 
 from pliant.cli import free_lattices as free
 from pliant.cli import options as opt
+from pliant.cli.cage import CageOption, Coordinates, CoordinatesOption, PosedOption, cage_choice
 from pliant.cli.choice import Choice
 from pliant.cli.deformer_options import STEPS
 from pliant.cli.session import Session
@@ -32,6 +33,9 @@ def deform(
     cylinder: free.CylinderOption = None,
     prism: free.PrismOption = None,
     sphere: free.SphereOption = None,
+    cage: CageOption = None,
+    posed: PosedOption = None,
+    coordinates: CoordinatesOption = Coordinates.mean_value,
     margin: opt.MarginOption = 0.0,
     move: opt.MoveOption = None,
     inverse: opt.InverseOption = False,
@@ -42,13 +46,26 @@ def deform(
 ) -> None:
     """Deform a mesh.
 
-    Give a transform file, a new lattice whose control points you move, or deformations such as --twist, several in
-    turn. Polygons, texture coordinates, groups and materials stay as they are; stored normals follow.
+    Give a transform file, a new lattice whose control points you move, a cage and the same cage posed, or deformations
+    such as --twist, several in turn. Polygons, texture coordinates, groups and materials stay as they are; stored
+    normals follow.
     """
     steps = context.meta[STEPS]
     tool = free.free_lattice(dirichlet, sites_to, cylinder, prism, sphere)
     choice = Choice(
-        ffd, placement, variant, edge, origin, lattice, margin, tuple(move or ()), inverse, mesh_space, steps, tool
+        ffd,
+        placement,
+        variant,
+        edge,
+        origin,
+        lattice,
+        margin,
+        tuple(move or ()),
+        inverse,
+        mesh_space,
+        steps,
+        tool,
+        cage_choice(cage, posed, coordinates),
     )
     with Session(json=json, quiet=quiet) as session:
         deform_file(session, mesh, output, choice, strict=strict)

@@ -22,7 +22,7 @@ Step = tuple[str, str]
 """A deformer's option and its fields, as they were typed."""
 
 STEPS = "pliant.steps"
-BASES = ("--ffd", "--lattice", "--dirichlet", "--cylinder", "--prism", "--sphere")
+BASES = ("--ffd", "--lattice", "--dirichlet", "--cylinder", "--prism", "--sphere", "--cage")
 
 
 class DeformingCommand(TyperCommand):
