@@ -59,7 +59,7 @@ EXPRESSIONS: Mapping[str, Mapping[str, tuple[float, float, float]]] = MappingPro
             "lower lip": (0.0, -0.1, 0.5),
             "cheek": (-0.2, 0.0, 0.1),
         },
-        "closed eyes": {"upper lid": (0.0, -0.42, 0.0), "lower lid": (0.0, 0.08, 0.0)},
+        "closed eyes": {"upper lid": (0.0, -0.38, 0.0), "lower lid": (0.0, 0.06, 0.0)},
     }
 )
 

@@ -1,19 +1,21 @@
 """The features of a face: which landmarks are moved, and by which handle.
 
-A handle is a name and the landmarks that it takes along, wholly or in part: along the lips and the lids the part that
-one handle has fades as that of the next grows. Groups are sets of handles. Right and left are the subject's; only the
-right half and the middle are listed, the left half is its mirror image.
+A handle is a name and the landmarks that it takes along, wholly or in part: along the lips, the lids and the outline
+the part that one handle has fades as that of the next grows. Groups are sets of handles. Right and left are the
+subject's; only the right half and the middle are listed, the left half is its mirror image.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from functools import cache
+from itertools import pairwise
 from types import MappingProxyType
 
 import numpy as np
 from numpy.typing import NDArray
 
+from pliant.errors import InvalidParameter
 from pliant.face.topology import opposite
 
 Floats = NDArray[np.float64]
@@ -25,11 +27,9 @@ _SIMPLE: dict[str, tuple[int, ...]] = {
     "nose bridge": (168, 197),
     "nose tip": (4, 2),
     "nose wings": (64, 294),
-    "chin": (152, 199, 176, 400),
+    "chin": (199, 200),
     "right cheek": (50, 205, 117),
-    "forehead": (10, 151, 67, 297),
-    "right temple": (54, 127, 234),
-    "right jaw": (58, 136),
+    "forehead": (151, 69),
 }
 _LIPS = (  # from the middle of the upper lip by the right corner to the middle of the lower, outermost first
     (0, 37, 39, 40, 185, 61, 146, 91, 181, 84, 17),
@@ -39,6 +39,11 @@ _LIPS = (  # from the middle of the upper lip by the right corner to the middle 
 )
 _UPPER_LID = (33, 246, 161, 160, 159, 158, 157, 173, 133)  # from the outer corner to the inner
 _LOWER_LID = (33, 7, 163, 144, 145, 153, 154, 155, 133)
+_OUTLINE = (10, 109, 67, 103, 54, 21, 162, 127, 234, 93, 132, 58, 172, 136, 150, 149, 176, 148, 152)
+_ALONG_OUTLINE = (  # which handle has all of the outline, at which step from the forehead to the chin
+    *((0, "forehead"), (2, "forehead"), (6, "right temple"), (8, "right temple")),
+    *((12, "right jaw"), (13, "right jaw"), (16, "chin"), (18, "chin")),
+)
 
 GROUPS: Mapping[str, tuple[str, ...]] = MappingProxyType(
     {
@@ -74,6 +79,11 @@ def sites() -> tuple[Indices, Floats]:
             middle = float(np.sin(np.pi * step / 8))
             parts[landmark, "right eye corners"] = 1 - middle
             parts[landmark, f"right {name}"] = middle
+    for (start, first), (stop, second) in pairwise(_ALONG_OUTLINE):
+        for step in range(start, stop + 1):
+            part = _fade((step - start) / (stop - start))
+            parts[_OUTLINE[step], first] = 1 - part
+            parts[_OUTLINE[step], second] = part if second != first else 1.0
     parts |= {(int(opposite()[landmark]), _across(handle)): part for (landmark, handle), part in parts.items()}
     chosen = np.unique([landmark for landmark, _ in parts])
     table = np.zeros((len(chosen), len(HANDLES)))
@@ -96,8 +106,6 @@ def handles_of(name: str) -> list[int]:
     InvalidParameter
         Neither has this name.
     """
-    from pliant.errors import InvalidParameter
-
     if name in HANDLES:
         return [HANDLES.index(name)]
     if name in GROUPS:
