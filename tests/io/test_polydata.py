@@ -2,12 +2,14 @@
 
 import numpy as np
 import pytest
+import pyvista as pv
+from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
 import pliant as pl
 from pliant.errors import UnreadableFile, UnsupportedFormat
+from pliant.io import polydata_process, vtp_file
+from pliant.io.format import Source
 from pliant.io.meshes import read_mesh_bytes
-
-pv = pytest.importorskip("pyvista")
 
 
 @pytest.fixture
@@ -37,6 +39,41 @@ def test_points_change_and_all_else_stays(sphere, ending, tmp_path):
     for name in sphere.point_data:
         assert np.array_equal(moved.point_data[name], sphere.point_data[name])
     assert np.array_equal(moved.cell_data["id"], sphere.cell_data["id"])
+
+
+@pytest.mark.parametrize("mode", [1, 2])
+@pytest.mark.parametrize("encoded", [0, 1])
+@pytest.mark.parametrize("compressed", [False, True])
+@pytest.mark.parametrize(("header", "order"), [(32, 1), (64, 0)])
+def test_every_binary_layout_reads_as_vtk_reads_it(mode, encoded, compressed, header, order, tmp_path):
+    random = np.random.default_rng(2)
+    made = pv.PolyData(random.normal(size=(900, 3)), verts=[1, 7], lines=[3, 0, 1, 2], faces=[4, 0, 1, 2, 3] * 400)
+    made["v"], made["u"] = random.normal(size=(900, 3)).astype(np.float32), np.arange(900).astype(np.uint8)
+    made.cell_data["id"], made.field_data["f"] = np.arange(402), [1.5, 2]
+    made.field_data["word"] = ["hello"]
+    made.point_data.active_normals_name = "v"
+    writer = vtkXMLPolyDataWriter()
+    writer.SetFileName(str(tmp_path / "a.vtp"))
+    writer.SetInputData(made)
+    writer.SetDataMode(mode)
+    writer.SetEncodeAppendedData(encoded)
+    writer.SetBlockSize(4096)
+    writer.SetHeaderType(header)
+    writer.SetByteOrder(order)
+    if not compressed:
+        writer.SetCompressorTypeToNone()
+    writer.Write()
+    data = (tmp_path / "a.vtp").read_bytes()
+    own = vtp_file.read(data)
+    assert own is not None
+    arrays, meta = polydata_process.read(Source(data, "a.vtp"))
+    meta.pop("arrays")
+    assert own[1] == meta
+    assert {name: (a.dtype, a.tolist()) for name, a in own[0].items()} == {
+        name: (a.dtype, a.tolist()) for name, a in arrays.items()
+    }
+    for cut in (len(data) // 3, len(data) // 2, len(data) - 40):
+        assert vtp_file.read(data[:cut]) is None
 
 
 def test_points_lines_polygons_and_strips_stay_what_they_are(tmp_path):

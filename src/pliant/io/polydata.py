@@ -1,4 +1,7 @@
-"""VTK polydata, .vtp and the older .vtk: read by VTK in a process of its own, written by VTK here."""
+"""VTK polydata, .vtp and the older .vtk.
+
+Plain .vtp files are read here, all others by VTK in a process of its own; VTK writes them.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pliant.errors import UnsupportedFormat
-from pliant.io import polydata_process, polydata_writer
+from pliant.io import polydata_process, polydata_writer, vtp_file
 from pliant.io.carrier import carrier_of, with_carrier
 from pliant.io.format import Encoded, Keeps, MeshFormat, Source
 from pliant.io.polydata_writer import Layout
@@ -45,8 +48,7 @@ class PolyData(MeshFormat):
             raise source.unreadable("the header is not that of a VTK file", "export the file again", at=0)
         if kind != "polydata":
             raise UnsupportedFormat(f"{source.name}: a VTK file of {kind}; extract its surface as polydata first")
-        require_vtk("reading VTK files")
-        arrays, meta = polydata_process.read(source)
+        arrays, meta = vtp_file.read(source.data) or self._by_vtk(source)
         points = arrays["points"].astype(np.float64)
         cells = {name: ragged_cells(source, arrays, name, len(points)) for name in polydata_process.CELLS}
         polygons, row = _polygons(cells)
@@ -62,6 +64,10 @@ class PolyData(MeshFormat):
         )
         layout = Layout(arrays, meta, style(source.data))
         return with_carrier(mesh, self.name, source.data, layout, _unique(cells, meta))
+
+    def _by_vtk(self, source: Source) -> tuple[dict[str, NDArray[Any]], dict[str, Any]]:
+        require_vtk("reading VTK files")
+        return polydata_process.read(source)
 
     def encode(self, mesh: PolygonMesh, path: Path) -> Encoded:
         """The file that the mesh was read from, with other positions; a new one if that was none or another."""
