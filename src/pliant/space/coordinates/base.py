@@ -13,7 +13,7 @@ from pliant.mesh import Points
 from pliant.numerics.chunks import for_chunks
 from pliant.space.coordinates.surface import CageSurface, Floats
 
-_NUMBERS = 4_000_000  # numbers in the rows of one piece of points: 32 MB
+_NUMBERS = 400_000  # numbers in the rows of one piece of points: 3 MB, which stay in the cache
 PIECE = 2048  # points in a piece, at most: below what is ever cut into pieces again
 
 

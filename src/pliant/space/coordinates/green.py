@@ -39,7 +39,7 @@ class Green(Coordinates):
         green.green_weights(points.reshape(-1), 0, len(points), *self._shape, surface.planes, phi, psi)
         missing = 1 - phi.sum(axis=1)
         doubtful = np.abs(missing) > _ROUNDING
-        phi[~doubtful] *= 1 + missing[~doubtful, None]
+        phi *= np.where(doubtful, 1.0, 1 + missing)[:, None]
         place = np.ones(len(points), np.int8)
         if doubtful.any():
             at = np.flatnonzero(doubtful)
