@@ -55,9 +55,15 @@ from .scene.clip import Clip as Clip
 from .scene.layer import Layer as Layer
 from .scene.project import load_project as load_project
 from .scene.project import save_project as save_project
+from .scene.recipe import Recipe as Recipe
+from .scene.recipe import read_recipe as read_recipe
+from .scene.recipe_writing import write_recipe as write_recipe
 from .scene.scene import Scene as Scene
 from .scene.sequence import MeshSequence as MeshSequence
 from .scene.stack import Stack as Stack
+from .scene.template_library import save_template as save_template
+from .scene.template_library import template as template
+from .scene.template_library import templates as templates
 from .shape.bspline_kernel import BSplineKernel as BSplineKernel
 from .shape.closest_point_chain import ClosestPointDensity as ClosestPointDensity
 from .shape.diagnostics import effective_sample_size as effective_sample_size

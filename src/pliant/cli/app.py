@@ -17,9 +17,11 @@ from pliant.cli.exits import EXPLAINED
 from pliant.cli.face import face
 from pliant.cli.info import info
 from pliant.cli.model import app as model
+from pliant.cli.recipes import animate, apply, export_recipe, templates
 from pliant.cli.render import render
 from pliant.cli.skeleton import skeleton
 from pliant.cli.smooth import smooth
+from pliant.cli.studio import studio
 from pliant.cli.transfer import transfer
 from pliant.cli.warp import warp
 
@@ -30,7 +32,26 @@ app = typer.Typer(
     pretty_exceptions_enable=False,  # bugs are reported by the entry point
     epilog=EXPLAINED,
 )
-for command in (deform, warp, edit, skeleton, smooth, transfer, cage, info, check, convert, render, face, demo):
+for command in (
+    deform,
+    warp,
+    edit,
+    skeleton,
+    apply,
+    animate,
+    templates,
+    export_recipe,
+    smooth,
+    transfer,
+    cage,
+    info,
+    check,
+    convert,
+    render,
+    face,
+    studio,
+    demo,
+):
     app.command(cls=DeformingCommand if command in (deform, render) else None)(command)
 
 app.add_typer(model, name="model")

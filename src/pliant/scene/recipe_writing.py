@@ -13,8 +13,8 @@ from pliant.errors import InvalidParameter, UnwritableFile
 from pliant.io.files import write_bytes
 from pliant.scene.clip import Clip
 from pliant.scene.fields import fields_of
-from pliant.scene.layer_data import stack_data
 from pliant.scene.keyed import tool_of
+from pliant.scene.layer_data import stack_data
 from pliant.scene.recipe_layers import RESERVED
 from pliant.scene.recipe_values import fields_with_degrees
 from pliant.scene.rooms import deformer_classes

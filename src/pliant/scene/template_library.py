@@ -1,4 +1,4 @@
-"""Templates: ready recipes that fit any mesh. Ours stand beside this file; users keep theirs in a folder of their own."""
+"""Templates: ready recipes that fit any mesh. Ours stand beside this file; users keep theirs in their own folder."""
 
 from __future__ import annotations
 
