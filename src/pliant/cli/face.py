@@ -63,8 +63,8 @@ def face(
     if amount is None and (gains or expression):
         raise typer.BadParameter("a caricature is needed: give --caricature 0.8", param_hint="--group, --expression")
     with Session(json=json, quiet=quiet) as session:
-        from pliant.face.exaggeration import caricature
         from pliant.face.dense import dense_face
+        from pliant.face.exaggeration import caricature
         from pliant.face.face import chosen, faces_from_photo
 
         found = faces_from_photo(photograph)

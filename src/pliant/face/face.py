@@ -143,4 +143,5 @@ def dressed(points: Points, shape: PolygonMesh, picture: Picture, pose: Floats, 
         uvs=CornerValues(uvs, shape.faces.flat),
         groups=groups,
         materials=FaceLabels(("skin",), np.zeros(len(shape.faces), np.int32)),
+        material_library={"skin": Material("skin", (1.0, 1.0, 1.0), picture.file)},
     )

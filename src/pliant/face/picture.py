@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cache, cached_property
 from io import BytesIO
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -58,6 +61,16 @@ class Picture:
         u, v = ((places - self.low) / (self.high - self.low)).T
         return np.asarray(np.clip(np.column_stack([u, 1 - v]), 0, 1))
 
+    @cached_property
+    def file(self) -> Path:
+        """The picture as a file, for whatever draws a mesh that wears it; it is gone when the program ends."""
+        path = Path(_folder().name) / f"{id(self):x}.png"
+        path.write_bytes(self.png())
+        return path
+
+    def __reduce__(self) -> tuple[object, ...]:
+        return Picture, (self.pixels, self.low, self.high)
+
     def png(self) -> bytes:
         """The picture as a PNG file."""
         from PIL import Image as Pictures
@@ -65,3 +78,8 @@ class Picture:
         stream = BytesIO()
         Pictures.fromarray(self.pixels).save(stream, "PNG", compress_level=4)
         return stream.getvalue()
+
+
+@cache
+def _folder() -> TemporaryDirectory[str]:
+    return TemporaryDirectory(prefix="pliant-face-")
