@@ -44,7 +44,7 @@ def write_archive(path: Path | str, manifest: Mapping[str, Any], arrays: Arrays)
         file = files.setdefault(key, f"arrays/{len(files)}.npy")
         stored[file], named[name] = array, {"file": file, "hash": key}
     try:
-        with replacing(path) as temporary, zipfile.ZipFile(temporary, "w") as archive:
+        with replacing(path, durable=True) as temporary, zipfile.ZipFile(temporary, "w") as archive:
             text = orjson.dumps({**manifest, "arrays": named}, option=orjson.OPT_INDENT_2)
             archive.writestr(zipfile.ZipInfo(MANIFEST), text)
             for file, array in stored.items():

@@ -1,7 +1,7 @@
 """Placements between placements: what lies between two affine maps when one tool or object moves to the other.
 
-The linear part is taken apart into a rotation and a stretch; the rotation turns about one axis at a constant rate,
-stretch and position change in proportion (Shoemake & Duff 1992).
+The way from one to the other is taken as one turn, with stretches in proportion, about the place that it leaves where
+it is (Shoemake & Duff 1992 take the linear part apart likewise): a motion does not depend on where the origin lies.
 """
 
 from __future__ import annotations
@@ -13,16 +13,21 @@ from pliant.numerics.rotations import nearest_rotations, rotations_of
 
 Floats = NDArray[np.float64]
 
+_STILL = 1e-9  # of the largest change: less of one leaves no place where it is
+
 
 def between(first: Floats, second: Floats, part: float) -> Floats:
     """(4, 4) the map at a part of the way from one (4, 4) affine map to another; beyond 0 and 1 it goes on."""
-    turns = nearest_rotations(np.stack([first[:3, :3], second[:3, :3]]))
-    stretches = turns.transpose(0, 2, 1) @ np.stack([first[:3, :3], second[:3, :3]])
-    turn = turns[0] @ rotations_of(part * _vector(turns[0].T @ turns[1])[None])[0]
+    way = np.linalg.solve(first, second)
+    linear, offset = way[:3, :3], way[:3, 3]
+    turn = nearest_rotations(linear[None])[0]
+    stretch = turn.T @ linear
+    partial = rotations_of(part * _vector(turn)[None])[0] @ ((1 - part) * np.eye(3) + part * stretch)
+    still = np.linalg.pinv(np.eye(3) - linear, rcond=_STILL) @ offset
     result = np.eye(4)
-    result[:3, :3] = turn @ ((1 - part) * stretches[0] + part * stretches[1])
-    result[:3, 3] = (1 - part) * first[:3, 3] + part * second[:3, 3]
-    return result
+    result[:3, :3] = partial
+    result[:3, 3] = still - partial @ still + part * (offset - still + linear @ still)
+    return np.asarray(first @ result)
 
 
 def _vector(rotation: Floats) -> Floats:
