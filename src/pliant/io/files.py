@@ -30,10 +30,11 @@ def read_bytes(path: Path | str) -> bytes:
 
 
 @contextmanager
-def replacing(path: Path | str) -> Iterator[Path]:
+def replacing(path: Path | str, *, durable: bool = False) -> Iterator[Path]:
     """A temporary path beside the target, renamed over it on success and removed on failure.
 
-    Whoever reads the target sees the old file or the new one, never a part.
+    Whoever reads the target sees the old file or the new one, never a part. ``durable`` waits until the disk has
+    it, for what nobody can make again: a loss of power then costs nothing either.
     """
     target = Path(path)
     target.parent.mkdir(parents=True, exist_ok=True)
@@ -43,10 +44,12 @@ def replacing(path: Path | str) -> Iterator[Path]:
     try:
         temporary.chmod(0o666 & ~_umask())
         yield temporary
-        with temporary.open("rb") as written:
-            os.fsync(written.fileno())
+        if durable:
+            with temporary.open("rb") as written:
+                os.fsync(written.fileno())
         temporary.replace(target)
-        _settle(target.parent)
+        if durable:
+            _settle(target.parent)
     finally:
         temporary.unlink(missing_ok=True)
 

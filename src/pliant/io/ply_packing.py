@@ -10,6 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pliant.io.ply_layout import NAMES
+from pliant.numerics.chunks import for_chunks
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,11 +80,18 @@ def _packed_alike(columns: list[Block | Lists], rows: int) -> memoryview:
         if isinstance(column, Lists):
             fields.append((f"count{i}", column.count, ()))
         fields.append((f"values{i}", column.values.dtype.newbyteorder("<"), (width,)))
+    first = columns[0].values
+    if len(fields) == 1 and first.dtype == fields[0][1] and first.flags.c_contiguous:
+        return first.reshape(-1).view(np.uint8).data
     record = np.empty(rows, np.dtype(fields))
-    for i, column in enumerate(columns):
-        if isinstance(column, Lists):
-            record[f"count{i}"] = column.lengths[0]
-        record[f"values{i}"] = column.values.reshape(rows, -1)
+
+    def work(start: int, stop: int) -> None:
+        for i, column in enumerate(columns):
+            if isinstance(column, Lists):
+                record[f"count{i}"][start:stop] = column.lengths[0]
+            record[f"values{i}"][start:stop] = column.values.reshape(rows, -1)[start:stop]
+
+    for_chunks(work, rows)
     return record.view(np.uint8).data
 
 
