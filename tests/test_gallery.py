@@ -25,11 +25,11 @@ NUMBERS = {
     "dirichlet_ffd": (0.0, 1e-12),  # sites go where they are moved
     "displacement_arrows": (1.0, 1e-12),  # no point outruns the layers of control points
     "displacement_grid": (3.0276, 1e-3),
+    "extended_ffd": (0.0, 1e-12),  # the lattice at rest gives every point back
     "face_caricature": (0.3, 0.28),  # above zero: nothing folds
     "face_from_photo": (0.0215, 0.01),  # centimetres between landmarks and the dense face
     "face_handles": (0.0, 1e-9),  # a symmetric face stays symmetric
-    "face_turntable": (0.0, 0.5),  # half-way it looks straight ahead again
-    "extended_ffd": (0.0, 1e-12),  # the lattice at rest gives every point back
+    "face_turntable": (24.0, 0.0),  # thirteen views there, and back
     "flare": (0.244132, 1e-5),  # the square of the narrowest scale
     "fold_certificate": (0.391395, 1e-3),  # the step at which the first fold begins
     "hero": (3 * 96 / 72, 1e-12),  # three panels
