@@ -265,8 +265,8 @@ def require_finite(points: Points, what: str) -> Points:
     NonFiniteResult
         With the count and the first index of those that are not.
     """
-    bad = np.flatnonzero(~np.isfinite(points).all(axis=1))
-    if len(bad):
+    if not np.isfinite(points).all():
+        bad = np.flatnonzero(~np.isfinite(points).all(axis=1))
         raise NonFiniteResult(f"{what}: {len(bad)} of {len(points):,} points are not finite, first point {bad[0]}")
     return points
 

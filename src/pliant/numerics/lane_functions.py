@@ -1,8 +1,8 @@
-"""Angles and logarithms of eight lanes: numba would call the library's scalar ones, one lane after another.
+"""Angles, logarithms and roots of eight lanes.
 
-Both begin with a quotient that brings the argument near one, by octants for the angle and by powers of two for the
-logarithm; what remains is a polynomial through Chebyshev's points, exact to 3e-18 of its value before rounding. To 4
-units of the last place.
+For the first two numba would call the library's scalar ones, one lane after another. Both begin with a quotient that
+brings the argument near one, by octants for the angle and by powers of two for the logarithm; what remains is a
+polynomial through Chebyshev's points, exact to 3e-18 of its value before rounding. To 4 units of the last place.
 """
 
 from __future__ import annotations
@@ -84,6 +84,33 @@ def mantissa(_typing: Any, value: Any) -> Any:
         return builder.bitcast(builder.or_(bits, _words(1023 << 52)), _VECTOR)
 
     return lanes(lanes), generate
+
+
+@intrinsic
+def inverse_root_guess(_typing: Any, value: Any) -> Any:
+    """One over the square root of positive lanes to 3.5 %, finite where a lane is 0: half the exponent, by its bits."""
+
+    def generate(_context: Any, builder: Any, _signature: Any, args: Any) -> Any:
+        halved = builder.lshr(builder.bitcast(args[0], _WORDS), _words(1))
+        return builder.bitcast(builder.sub(_words(0x5FE6EB50C7B537A9), halved), _VECTOR)
+
+    return lanes(lanes), generate
+
+
+@inlined
+def quick_root(square):
+    """The square root, to 2 units of the last place: two steps of Newton's method, one of third order.
+
+    Twice as fast as the processor's own, which lets multiplications wait. The guess: Lomont (2003).
+    """
+    square = square + 1e-300  # at 0 the guess squared would overflow
+    half = square * 0.5
+    inverse = inverse_root_guess(square)
+    inverse = inverse * (1.5 - half * inverse * inverse)
+    inverse = inverse * (1.5 - half * inverse * inverse)
+    near = square * inverse
+    left = 1.0 - near * inverse
+    return near + near * left * (left * 0.375 + 0.5)
 
 
 @inlined

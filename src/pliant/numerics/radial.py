@@ -8,10 +8,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pliant.numerics.chunks import for_chunks
+from pliant.numerics.ragged import source
 
 Floats = NDArray[np.float64]
 
-CHUNK = 4096  # points a chunk: hundreds of centres are work enough
+CHUNK = 16_384  # points a chunk: hundreds of centres are work enough
 _LANES = 8
 
 
@@ -44,7 +45,7 @@ class RadialBasis:
                 self.sum(_filled(points), values, linear, _filled(base), few)
             out[:] = few[: len(points)]
             return
-        flat, under, target = points.reshape(-1), base.reshape(-1), out.reshape(-1)
+        flat, under, target = source(points.reshape(-1)), source(base.reshape(-1)), out.reshape(-1)
         centers, weights = self.centers.reshape(-1), values.reshape(-1)
         for_chunks(
             lambda first, stop: radial_sum(

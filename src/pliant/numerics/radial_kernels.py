@@ -15,6 +15,7 @@ from __future__ import annotations
 import numpy as np
 
 from pliant.numerics.compiling import inlined, kernel
+from pliant.numerics.lane_functions import quick_root
 from pliant.numerics.lanes import (
     clamp,
     get,
@@ -37,7 +38,7 @@ def _from(centers, k, x, y, z):
 
 @inlined
 def _phi(square, scale, support):
-    r = root(square) * scale
+    r = quick_root(square) * scale
     if support:
         less = clamp(1.0 - r, 0.0, 1.0)
         less = less * less

@@ -71,7 +71,8 @@ class LandmarkSystem:
         factors, pivots = self._factors
         right = np.zeros((len(factors), 3))
         right[:rows] = values
-        return np.asarray(lu_solve((factors, pivots.copy()), right))  # LAPACK's wrapper counts pivots up and down
+        with one_blas_thread():
+            return np.asarray(lu_solve((factors, pivots.copy()), right))  # LAPACK's wrapper counts pivots up and down
 
 
 def _factorised(matrix: Floats) -> Any:

@@ -89,6 +89,12 @@ class LandmarkWarp(SpaceDeformer):
         """Keep the target's points: the sums are made as they are needed, not stored."""
         return LandmarkBinding(self._system, as_points(target), self.rest, self.controls)
 
+    def _deformed(self, target: Target) -> Points:
+        points = as_points(target, borrow=True)
+        result = np.empty_like(points)
+        self._system.displace(points, self.controls - self.rest, points, result)
+        return require_finite(result, "landmark warp")
+
     def jacobian(self, points: ArrayLike) -> Floats:
         return self._system.jacobian(as_points(points, borrow=True), self.controls - self.rest)
 
