@@ -17,7 +17,7 @@ from scene_shapes import HANDLE, MASK, MESH, lattice, mixed_stack, space_stack
 
 import pliant as pl
 from pliant.errors import InvalidParameter, PliantWarning, UnreadableFile, UnwritableFile
-from pliant.mesh import CornerValues, FaceLabels, Material
+from pliant.mesh import FaceLabels, Material
 
 
 def full_scene():
@@ -326,7 +326,7 @@ def test_hostile_entries_are_refused(case, saved):
 def test_an_entry_twice_is_refused(saved):
     with pytest.warns(UserWarning, match="Duplicate name"):
         rewritten(saved, extra=[("arrays/0.npy", b"x")])
-    with pytest.raises(UnreadableFile, match="it holds 'arrays/0.npy' twice"):
+    with pytest.raises(UnreadableFile, match=r"it holds 'arrays/0.npy' twice"):
         pl.load_project(saved)
 
 

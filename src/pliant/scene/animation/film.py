@@ -22,7 +22,7 @@ def write_clip(
     path: Path,
     progress: Progress | None,
     *,
-    size: tuple[int, int] = (960, 720),
+    size: tuple[int, int] = (800, 600),
     view: str | ArrayLike = "iso",
     up: str = "z",
     background: str = "light",

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pliant.io.gltf_file import GltfFile, packed
+from pliant.io.losses import as_float32
 
 Floats = NDArray[np.float64]
 
@@ -65,8 +66,8 @@ class MorphWriter:
         self._names.append(name)
         known: dict[tuple[int, bytes], int] = {}
         for share in self._shares:
-            local = np.linalg.solve(share.linear, displacements[share.vertices].T).T.astype(np.float32)
-            local = np.ascontiguousarray(local) + np.float32(0.0)  # no negative zeros
+            own = np.linalg.solve(share.linear, displacements[share.vertices].T).T
+            local = np.ascontiguousarray(as_float32(own, "glTF")[0]) + np.float32(0.0)  # no negative zeros
             key = len(local), local.tobytes()
             if key not in known:
                 known[key] = self._accessor(local)
