@@ -1,4 +1,9 @@
+from . import batch as batch
+from . import studio as studio
+from .batch.outcome import Outcome as Outcome
+from .batch.running import run_batch as run_batch
 from .cages.boxes import cage_from_box as cage_from_box
+from .cages.builder import CageBuilder as CageBuilder
 from .cages.building import build_cage as build_cage
 from .cages.checking import CageReport as CageReport
 from .cages.checking import check_cage as check_cage

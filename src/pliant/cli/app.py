@@ -6,6 +6,7 @@ from typing import Annotated
 
 import typer
 
+from pliant.cli.batch import batch
 from pliant.cli.cage import cage
 from pliant.cli.check import check
 from pliant.cli.convert import convert
@@ -38,6 +39,7 @@ for command in (
     edit,
     skeleton,
     apply,
+    batch,
     animate,
     templates,
     export_recipe,

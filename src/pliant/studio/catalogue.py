@@ -1,0 +1,64 @@
+"""What there is to choose from: deformers, formats, quantities, examples, recent files."""
+
+from __future__ import annotations
+
+from dataclasses import asdict
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from pliant._version import __version__
+from pliant.scene.kinds import Kind, all_kinds
+from pliant.studio.files import CHUNK, MOST_BYTES
+from pliant.studio.quantities import QUANTITIES
+from pliant.studio.samples import SAMPLES
+from pliant.studio.titles import titled
+
+if TYPE_CHECKING:
+    from pliant.studio.session import Session
+
+LATTICES = ("bspline-ffd", "bezier-ffd", "clamped-ffd", "bezier-patch-ffd", "extended-ffd")
+
+
+def catalogue(session: Session) -> dict[str, Any]:
+    """What a page can offer."""
+    return {**_lasting(), "recent": _recent(session), "recoverable": _recoverable(session)}
+
+
+@cache
+def _lasting() -> dict[str, Any]:
+    from pliant.io import meshes, transforms
+
+    written = [each for each in meshes.formats() if each["written"]]
+    return {
+        "version": __version__,
+        "kinds": [_kind(kind) for kind in all_kinds().values() if kind.makers],
+        "meshes": [{"name": each["name"], "suffixes": list(each["suffixes"])} for each in written],
+        "readable": sorted({suffix for each in meshes.formats() for suffix in each["suffixes"]}),
+        "transforms": [{"name": each.name, "suffixes": list(each.endings)} for each in transforms.FORMATS],
+        "quantities": list(QUANTITIES),
+        "examples": [{"name": name, "title": each.title, "points": each.points} for name, each in SAMPLES.items()],
+        "caps": {"upload": MOST_BYTES, "chunk": CHUNK},
+    }
+
+
+def _kind(kind: Kind) -> dict[str, Any]:
+    group = "lattice" if kind.name in LATTICES else "shape" if hasattr(kind.cls, "parameters") else "field"
+    makers = {name: [asdict(field) for field in fields] for name, fields in kind.makers.items()}
+    return {"name": kind.name, "title": titled(kind.name), "summary": kind.summary, "group": group, "makers": makers}
+
+
+def _recent(session: Session) -> list[str]:
+    """Recent files below the studio's folder, as seen from there."""
+    if session.autosave is None or session.root is None:
+        return []
+    found = []
+    for name in session.autosave.recent():
+        path = Path(name)
+        if path.is_relative_to(session.root) and path.is_file():
+            found.append(path.relative_to(session.root).as_posix())
+    return found
+
+
+def _recoverable(session: Session) -> list[dict[str, str]]:
+    return [] if session.autosave is None else session.autosave.recoverable()

@@ -1,0 +1,173 @@
+"""Opening: examples, uploads, files of the studio's folder, unsaved work; saving and closing."""
+
+from __future__ import annotations
+
+import tempfile
+from pathlib import Path
+
+import numpy as np
+
+from pliant.errors import InvalidMesh, InvalidParameter
+from pliant.io import meshes, transforms
+from pliant.io.files import read_bytes
+from pliant.mesh import PolygonMesh
+from pliant.scene.project import load_project, save_project
+from pliant.scene.scene import Scene
+from pliant.studio.files import CHUNK, inside
+from pliant.studio.frames import Frame
+from pliant.studio.request import Request, command
+from pliant.studio.samples import sample
+from pliant.studio.session import Session
+
+PROJECT = ".pliant"
+MOST_POINTS = 8_000_000
+_MOST_ENTRIES = 2000
+
+
+@command("upload.begin")
+def begin_upload(session: Session, request: Request) -> Frame:
+    """Announce files."""
+    return Frame({"upload": session.uploads.begin(request.several("files"))})
+
+
+@command("upload.chunk")
+def chunk(session: Session, request: Request) -> None:
+    """A piece of a file."""
+    data = request.array("bytes")
+    if data.nbytes > CHUNK:
+        raise InvalidParameter(f"a piece of a file may have {CHUNK:,} bytes; this one has {data.nbytes:,}")
+    session.uploads.write(request.text("upload"), request.integer("file"), data)
+
+
+@command("open.upload")
+def open_upload(session: Session, request: Request) -> Frame:
+    """A mesh or a project among uploaded files; a transform is left for the page to ask about."""
+    found = session.uploads.get(request.text("upload"))
+    if not found.complete:
+        raise InvalidParameter("the files have not come whole: send them again")
+    paths = [found.path(at) for at in range(len(found.names))]
+    chosen = main_file(paths)
+    if _is_transform(chosen):
+        if session.scene is None:
+            raise InvalidParameter(f"{chosen.name} is a deformation: open a mesh first, then drop it again")
+        return Frame({"transform": chosen.name})
+    return _open(session, chosen, chosen.stem)
+
+
+@command("open.path")
+def open_path(session: Session, request: Request) -> Frame:
+    """A mesh or a project of the studio's folder."""
+    path = inside(session.root, request.text("path"))
+    if session.autosave is not None:
+        session.autosave.remember(path)
+    return _open(session, path, path.stem)
+
+
+@command("open.example")
+def open_example(session: Session, request: Request) -> None:
+    """A shape of the start page."""
+    name = request.text("name")
+    session.begin(Scene(sample(name)), name.capitalize())
+
+
+@command("open.recover")
+def recover(session: Session, request: Request) -> None:
+    """Work that was not saved before its studio ended."""
+    if session.autosave is None:
+        raise InvalidParameter("this studio keeps no unsaved work")
+    name = request.text("name")
+    scene = load_project(session.autosave.place(name))
+    session.begin(scene, "Recovered", "recover")
+    session.saved = -1
+    session.autosave.keep(scene, "Recovered")
+    session.autosave.recovered(name)
+    session.tell_scene()
+
+
+@command("scene.close")
+def close(session: Session, request: Request) -> None:
+    """Back to the start page."""
+    session.close()
+
+
+@command("project.save")
+def save(session: Session, request: Request) -> Frame:
+    """The scene as a project file, for the page to hand over."""
+    name = f"{session.name or 'scene'}{PROJECT}"
+    with tempfile.TemporaryDirectory(prefix="pliant-save-") as folder:
+        save_project(session.required, Path(folder) / name)
+        data = read_bytes(Path(folder) / name)
+    session.saved = session.revision
+    if session.autosave is not None:
+        session.autosave.forget()
+    session.tell_scene()
+    return Frame({"name": name}, {"file": np.frombuffer(data, np.uint8)})
+
+
+@command("folder.list")
+def listing(session: Session, request: Request) -> Frame:
+    """Folders, and files that can be opened, of a folder below the studio's."""
+    folder = inside(session.root, request.text("folder", ""))
+    if not folder.is_dir():
+        raise InvalidParameter("this folder is gone")
+    endings = (PROJECT, *(suffix for each in meshes.formats() for suffix in each["suffixes"]))
+    entries = sorted((each for each in folder.iterdir() if not each.name.startswith(".")), key=lambda each: each.name)
+    folders = [each.name for each in entries if each.is_dir()][:_MOST_ENTRIES]
+    files = [each.name for each in entries if each.is_file() and each.name.lower().endswith(endings)]
+    return Frame({"folders": folders, "files": files[:_MOST_ENTRIES]})
+
+
+def read_scene(path: Path) -> Scene:
+    """The scene of a project, or of a mesh.
+
+    Raises
+    ------
+    InvalidMesh
+        No points, or more than a browser can draw.
+    """
+    scene = load_project(path) if path.suffix.lower() == PROJECT else Scene(meshes.read(path))
+    _require_drawable(scene.mesh, path.name)
+    return scene
+
+
+def main_file(paths: list[Path]) -> Path:
+    """The file that others belong to: a project, else a mesh, else a transform.
+
+    Raises
+    ------
+    InvalidParameter
+        None of them is any of these.
+    """
+    endings = [suffix for each in meshes.formats() for suffix in each["suffixes"]]
+    for wanted in ([PROJECT], endings):
+        for path in paths:
+            if path.name.lower().removesuffix(".gz").endswith(tuple(wanted)) and not _is_transform(path):
+                return path
+    for path in paths:
+        if _is_transform(path):
+            return path
+    names = ", ".join(path.name for path in paths)
+    raise InvalidParameter(f"{names}: neither a mesh, a project nor a deformation that pliant reads")
+
+
+def _open(session: Session, path: Path, name: str) -> Frame:
+    scene = read_scene(path)
+    session.begin(scene, name)
+    return Frame({"notes": []})
+
+
+def _is_transform(path: Path) -> bool:
+    """By its content where its ending may be a mesh's too."""
+    if not path.is_file():
+        return False
+    with path.open("rb") as stream:
+        head = stream.read(1 << 16)
+    found = transforms.transform_format(path, head)
+    return found is not None and (path.name.lower().endswith(found.endings))
+
+
+def _require_drawable(mesh: PolygonMesh, name: str) -> None:
+    if not len(mesh.points):
+        raise InvalidMesh(f"{name} has no points: there is nothing to show")
+    if len(mesh.points) > MOST_POINTS:
+        raise InvalidMesh(f"{name} has {len(mesh.points):,} points; the studio shows {MOST_POINTS:,} at most")

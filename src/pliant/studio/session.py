@@ -1,0 +1,241 @@
+"""The session: one scene with its history, and the pages that look at it.
+
+Everything runs on one thread, a command at a time, so that nothing has to be locked: a command is a small function of
+the registry. A drag is begin, previews, commit: one entry of the history. What a drag touches goes to the page that
+drags in the answer, to the others as an event.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pliant.errors import InvalidParameter, PliantError, PliantWarning
+from pliant.scene.scene import Scene
+from pliant.studio.autosave import Autosave
+from pliant.studio.catalogue import catalogue
+from pliant.studio.dragging import Dragging
+from pliant.studio.files import Uploads
+from pliant.studio.frames import Frame, MalformedFrame
+from pliant.studio.history import Entry, History
+from pliant.studio.jobs import Jobs
+from pliant.studio.request import COMMANDS, Client, Request
+from pliant.studio.samples import samples_folder
+from pliant.studio.stage import Stage
+from pliant.studio.state import scene_state
+
+
+class Session:
+    """A scene that people edit.
+
+    Parameters
+    ----------
+    scene
+        What to begin with; None = the start page.
+    name
+        What the document is called.
+    root
+        The folder whose files pages may open; None = no folder.
+    autosave
+        Where unsaved work is kept; None = nowhere.
+    """
+
+    def __init__(
+        self, scene: Scene | None = None, name: str = "", root: Path | None = None, autosave: Autosave | None = None
+    ) -> None:
+        self.root = None if root is None else root.resolve()
+        self.autosave = autosave
+        self.uploads = Uploads()
+        self.history: History | None = None
+        self.stage: Stage | None = None
+        self.dragging: Dragging | None = None
+        self.name, self.revision, self.saved = name, 0, 0
+        self.locked: dict[str, set[int]] = {}
+        self.clients: list[Client] = []
+        self.jobs = Jobs(self)
+        self.worker = ThreadPoolExecutor(1, "pliant-studio")
+        self.worker.submit(_one_blas_thread)
+        if scene is not None:
+            self.begin(scene, name)
+
+    @property
+    def scene(self) -> Scene | None:
+        """The scene that is shown; None on the start page."""
+        return None if self.history is None else self.history.scene
+
+    @property
+    def required(self) -> Scene:
+        """The scene that is shown.
+
+        Raises
+        ------
+        InvalidParameter
+            Nothing is open.
+        """
+        if self.scene is None:
+            raise InvalidParameter("nothing is open: open a mesh first")
+        return self.scene
+
+    @property
+    def shown(self) -> Stage:
+        """What the pages show of the scene."""
+        assert self.required is not None
+        assert self.stage is not None
+        return self.stage
+
+    def join(self, client: Client) -> None:
+        """A page has come: tell it all."""
+        self.clients.append(client)
+        client.send(Frame({"event": "hello", "catalogue": catalogue(self)}).encode())
+        self._tell_scene([client])
+        if self.stage is not None:
+            client.send(self.stage.mesh_frame().encode())
+        self.jobs.tell_fold([client])
+
+    def leave(self, client: Client) -> None:
+        """A page has gone; what it was dragging goes back."""
+        if client in self.clients:
+            self.clients.remove(client)
+        if self.dragging is not None and self.dragging.client is client:
+            self.drop_drag()
+
+    def handle(self, client: Client, data: bytes) -> None:
+        """Run the command of a frame, and answer it.
+
+        Raises
+        ------
+        MalformedFrame
+            The bytes are no command.
+        """
+        frame = Frame.decode(data)
+        known, name, values = frame.head.get("id"), frame.head.get("do"), frame.head.get("with", {})
+        if not isinstance(known, int) or not isinstance(name, str) or not isinstance(values, dict):
+            raise MalformedFrame("a frame is no command: it needs an id, a name and values")
+        try:
+            if name not in COMMANDS:
+                raise InvalidParameter(f"the studio knows no command {name!r}")
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", PliantWarning)
+                answer = COMMANDS[name](self, Request(client, values, frame.arrays)) or Frame()
+        except PliantError as error:
+            answer = Frame({"error": {"kind": type(error).__name__, "message": str(error)}})
+        except OSError as error:
+            answer = Frame({"error": {"kind": "OSError", "message": f"{error.filename or 'file'}: {error.strerror}"}})
+        except Exception as error:  # a bug must not end the session: the work in it would be lost
+            message = f"this is a bug in pliant: {type(error).__name__}: {error}"
+            answer = Frame({"error": {"kind": "Bug", "message": message}})
+        client.send(Frame({**answer.head, "answer": known}, answer.arrays).encode())
+
+    def begin(self, scene: Scene, name: str, key: str = "open") -> None:
+        """Show another scene, with a history of its own."""
+        self.drop_drag()
+        stage = Stage(scene)
+        self.history, self.stage = History(Entry(scene, key, name)), stage
+        self.name, self.locked = name, {}
+        self.revision += 1
+        self.saved = self.revision
+        self._tell_scene(self.clients)
+        self.broadcast(self.stage.mesh_frame())
+        self.jobs.look_for_folds()
+
+    def close(self) -> None:
+        """Back to the start page."""
+        self.drop_drag()
+        self.history = self.stage = None
+        self.name = ""
+        self.revision += 1
+        self.saved = self.revision
+        if self.autosave is not None:
+            self.autosave.forget()
+        self.broadcast(Frame({"event": "hello", "catalogue": catalogue(self)}))
+        self._tell_scene(self.clients)
+
+    def commit(self, scene: Scene, key: str, subject: str = "") -> None:
+        """Show a scene that has been made of the present one, as a new entry of the history."""
+        assert self.history is not None
+        self.shown.show(scene)  # where this fails, nothing has happened
+        self.history.push(Entry(scene, key, subject))
+        self.changed()
+
+    def go(self, position: int) -> None:
+        """Show another entry of the history."""
+        assert self.required is not None
+        assert self.history is not None
+        self.drop_drag()
+        if self.history.go(position):
+            self.shown.show(self.history.scene)
+            self.changed()
+
+    def changed(self) -> None:
+        """Tell everybody what is shown now, and keep it safe."""
+        self.revision += 1
+        moved = self.shown.moved_frame()
+        if moved is not None:
+            self.broadcast(moved)
+        self._tell_scene(self.clients)
+        if self.autosave is not None:
+            self.autosave.keep(self.required, self.name)
+        self.jobs.look_for_folds()
+
+    def drop_drag(self) -> None:
+        """Give up a drag: the shape goes back to where it was."""
+        if self.dragging is None:
+            return
+        self.dragging = None
+        if self.stage is not None:
+            moved = self.stage.moved_frame()
+            if moved is not None:
+                self.broadcast(moved)
+
+    def broadcast(self, frame: Frame, leave_out: Client | None = None) -> None:
+        """Send an event to all pages, or to all but one."""
+        if not self.clients or (leave_out is not None and self.clients == [leave_out]):
+            return
+        data = frame.encode()
+        for client in self.clients:
+            if client is not leave_out:
+                client.send(data)
+
+    def tell_scene(self) -> None:
+        """Tell everybody what the scene consists of."""
+        self._tell_scene(self.clients)
+
+    def submit(self, work: Callable[..., Any], *arguments: Any) -> Any:
+        """Do something on the session's thread; gives its future."""
+        return self.worker.submit(work, *arguments)
+
+    def end(self) -> None:
+        """Stop working; unsaved work stays where it is kept."""
+        self.jobs.end()
+        self.worker.shutdown(wait=True, cancel_futures=True)
+        if self.autosave is not None:
+            self.autosave.finish()
+        self.uploads.remove()
+
+    def locked_points(self, layer: str) -> NDArray[np.uint32]:
+        """The control points of a layer that nobody may move."""
+        return np.array(sorted(self.locked.get(layer, ())), np.uint32)
+
+    def may_read(self, path: Path) -> bool:
+        """Whether a file that a mesh refers to may be shown: of an upload, of the studio's folder, or a sample's."""
+        folders = [self.uploads.folder, self.root, samples_folder()]
+        found = path.resolve()
+        return any(folder is not None and found.is_relative_to(folder.resolve()) for folder in folders)
+
+    def _tell_scene(self, clients: list[Client]) -> None:
+        data = Frame({"event": "scene", "scene": scene_state(self)}).encode()
+        for client in clients:
+            client.send(data)
+
+
+def _one_blas_thread() -> None:
+    """Small systems are solved here, by the dozen: several BLAS threads wait for one another."""
+    from threadpoolctl import threadpool_limits
+
+    threadpool_limits(1, "blas")

@@ -1,0 +1,72 @@
+// Icons of our own: strokes on a 20 x 20 grid, coloured by the text around them.
+
+const PATHS = {
+  logo: "M3 5.5 10 2l7 3.5v9L10 18l-7-3.5zM3 5.5 10 9l7-3.5M10 9v9",
+  open: "M3 15.5v-11h5l2 2h7v9z",
+  save: "M4 3.5h9.5l2.5 2.5v10.5H4zM7 3.5v4h5v-4M6.5 16.5v-5h7v5",
+  export: "M10 12.5V3M6.5 6 10 2.5 13.5 6M4 10.5v6h12v-6",
+  import: "M10 2.5V12M6.5 9 10 12.5 13.5 9M4 11.5v5h12v-5",
+  undo: "M7.5 4 3.5 8l4 4M4 8h7.5a4.5 4.5 0 0 1 0 9H8",
+  redo: "M12.5 4 16.5 8l-4 4M16 8H8.5a4.5 4.5 0 0 0 0 9H12",
+  orbit: "M10 3.5v13M3.5 10h13M10 3.5 8 5.5M10 3.5l2 2M10 16.5l-2-2M10 16.5l2-2M3.5 10l2-2M3.5 10l2 2M16.5 10l-2-2M16.5 10l-2 2",
+  points: "M4.5 4.5h11v11h-11zM10 4.5v11M4.5 10h11",
+  pull: "M4 16c4 0 4-9 8-10M12 6h4M14 4l2 2-2 2M3 16h2",
+  view: "M2.5 10S5.5 5 10 5s7.5 5 7.5 5-3 5-7.5 5-7.5-5-7.5-5zM10 8a2 2 0 1 1 0 4 2 2 0 0 1 0-4z",
+  hidden: "M2.5 10S5.5 5 10 5s7.5 5 7.5 5-3 5-7.5 5-7.5-5-7.5-5zM4 16 16 4",
+  solo: "M10 3.5a6.5 6.5 0 1 1 0 13 6.5 6.5 0 0 1 0-13zM10 8a2 2 0 1 1 0 4 2 2 0 0 1 0-4z",
+  plus: "M10 4v12M4 10h12",
+  minus: "M4 10h12",
+  close: "M5 5l10 10M15 5 5 15",
+  trash: "M4 6h12M8 6V4h4v2M5.5 6l.8 10.5h7.4L14.5 6M8.5 9v5M11.5 9v5",
+  grip: "M7.5 5h.01M12.5 5h.01M7.5 10h.01M12.5 10h.01M7.5 15h.01M12.5 15h.01",
+  chevron: "M7.5 5l5 5-5 5",
+  down: "M5 7.5l5 5 5-5",
+  move: "M10 3v14M3 10h14M8 5l2-2 2 2M8 15l2 2 2-2M5 8l-2 2 2 2M15 8l2 2-2 2",
+  rotate: "M15.5 6.5A6.5 6.5 0 1 0 16.5 10M16 3v4h-4",
+  scale: "M4 10.5V16h5.5M16 9.5V4h-5.5M4 16l5-5M16 4l-5 5",
+  rectangle: "M4 6V4h2M9 4h2M14 4h2v2M16 9v2M16 14v2h-2M11 16H9M6 16H4v-2M4 11V9",
+  soft: "M2.5 15.5c4 0 4.5-11 7.5-11s3.5 11 7.5 11",
+  mirror: "M10 3v14M7.5 6 3.5 14h4zM12.5 6l4 8h-4z",
+  magnet: "M5 4v6a5 5 0 0 0 10 0V4h-3v6a2 2 0 0 1-4 0V4zM5 7h3M12 7h3",
+  lock: "M5.5 9h9v7.5h-9zM7.5 9V6.5a2.5 2.5 0 0 1 5 0V9",
+  layer: "M10 3.5 17 7l-7 3.5L3 7zM3.5 10.5 10 14l6.5-3.5M3.5 13.5 10 17l6.5-3.5",
+  history: "M3.5 10A6.5 6.5 0 1 1 5.5 14.7M3.5 10 2 8M3.5 10l2-1.8M10 6.5V10l2.5 2",
+  field: "M3 5c3-1.5 4 1.5 7 0s4 1.5 7 0M3 10c3-1.5 4 1.5 7 0s4 1.5 7 0M3 15c3-1.5 4 1.5 7 0s4 1.5 7 0",
+  arrows: "M3.5 16.5l5-5M5 11h3.5v3.5M11.5 8.5l5-5M13 3.5h3.5V7",
+  palette: "M10 3a7 7 0 1 0 0 14c1.5 0 1.5-1 1-2-.6-1.2.2-2.5 1.5-2.5H15c1.5 0 2-1.5 2-3A6.8 6.8 0 0 0 10 3zM6.5 9h.01M9 6h.01M13 7h.01",
+  frame: "M3.5 7V3.5H7M13 3.5h3.5V7M16.5 13v3.5H13M7 16.5H3.5V13M8 8h4v4H8z",
+  compare: "M10 2.5v15M3.5 5h4v10h-4zM12.5 5h4v10h-4z",
+  camera: "M3 6.5h3l1.5-2h5l1.5 2h3v9H3zM10 8a3 3 0 1 1 0 6 3 3 0 0 1 0-6z",
+  sun: "M10 6.5a3.5 3.5 0 1 1 0 7 3.5 3.5 0 0 1 0-7zM10 2v1.5M10 16.5V18M2 10h1.5M16.5 10H18M4.3 4.3l1 1M14.7 14.7l1 1M4.3 15.7l1-1M14.7 5.3l1-1",
+  moon: "M15.5 12A6.5 6.5 0 0 1 8 4.5a6 6 0 1 0 7.5 7.5z",
+  language: "M10 3a7 7 0 1 1 0 14 7 7 0 0 1 0-14zM3 10h14M10 3c2.5 2 2.5 12 0 14M10 3c-2.5 2-2.5 12 0 14",
+  help: "M10 3a7 7 0 1 1 0 14 7 7 0 0 1 0-14zM8 8a2 2 0 1 1 2.8 1.8c-.6.3-.8.7-.8 1.4M10 13.5h.01",
+  settings: "M3 6h8M15 6h2M13 4v4M3 14h2M9 14h8M7 12v4",
+  warning: "M10 3.5 17.5 16.5h-15zM10 8v4.5M10 14.5h.01",
+  check: "M4 10.5l4 4 8-9",
+  wire: "M3 10 10 3l7 7-7 7zM3 10h14M10 3v14",
+  shade: "M10 3a7 7 0 1 1 0 14 7 7 0 0 1 0-14zM10 3v14M12 4v12M14 5.5v9",
+  home: "M3 9.5 10 3.5l7 6M5 8.5v8h10v-8",
+  reset: "M4.5 8A6 6 0 1 1 4 11M4.5 3.5V8H9",
+  cube: "M10 2.5 16.5 6v8L10 17.5 3.5 14V6zM3.5 6 10 9.5 16.5 6M10 9.5v8",
+  ortho: "M3.5 7h9v9.5h-9zM7.5 7V3.5h9V13h-4",
+  target: "M10 5a5 5 0 1 1 0 10 5 5 0 0 1 0-10zM10 2v4M10 14v4M2 10h4M14 10h4",
+  file: "M5 2.5h6.5L15.5 6.5v11H5zM11.5 2.5v4h4",
+} as const;
+
+export type IconName = keyof typeof PATHS;
+
+const SVG = "http://www.w3.org/2000/svg";
+
+export function icon(name: IconName, size = 18): SVGSVGElement {
+  const svg = document.createElementNS(SVG, "svg");
+  svg.setAttribute("viewBox", "0 0 20 20");
+  svg.setAttribute("width", String(size));
+  svg.setAttribute("height", String(size));
+  svg.setAttribute("class", "icon");
+  svg.setAttribute("aria-hidden", "true");
+  const path = document.createElementNS(SVG, "path");
+  path.setAttribute("d", PATHS[name]);
+  svg.append(path);
+  return svg;
+}

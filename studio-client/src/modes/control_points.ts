@@ -1,0 +1,190 @@
+// Control points of a layer as the client knows them: where they rest, where they are, which are chosen or locked.
+
+import { Box3, Matrix4, Vector3 } from "three";
+import type { Frame } from "../transport/frame";
+
+export type Shape = [number, number, number];
+
+export class ControlPoints {
+  readonly rest: Float64Array;
+  readonly now: Float64Array;
+  readonly links: Uint32Array;
+  readonly axes: Vector3[];
+  readonly selected = new Set<number>();
+  locked: Set<number>;
+  /** The one that was chosen last. */
+  last: number | null = null;
+
+  constructor(
+    readonly layer: string,
+    readonly shape: Shape | null,
+    answer: Frame,
+  ) {
+    this.rest = answer.arrays["rest"] as Float64Array;
+    this.now = answer.arrays["points"] as Float64Array;
+    this.links = answer.arrays["links"] as Uint32Array;
+    const axes = answer.arrays["axes"] as Float64Array;
+    this.axes = [0, 1, 2].map((i) => new Vector3(axes[i]!, axes[3 + i]!, axes[6 + i]!));
+    this.locked = new Set(answer.arrays["locked"]);
+  }
+
+  get count(): number {
+    return this.rest.length / 3;
+  }
+
+  at(index: number): Vector3 {
+    return new Vector3().fromArray(this.now, 3 * index);
+  }
+
+  displacement(index: number): Vector3 {
+    return this.at(index).sub(new Vector3().fromArray(this.rest, 3 * index));
+  }
+
+  /** (i, j, k) of a control point of a lattice. */
+  place(index: number): Shape | null {
+    if (!this.shape) return null;
+    const [, y, z] = this.shape;
+    return [Math.floor(index / (y * z)), Math.floor(index / z) % y, index % z];
+  }
+
+  index([i, j, k]: Shape): number {
+    const [, y, z] = this.shape!;
+    return (i * y + j) * z + k;
+  }
+
+  /** A whole layer of the lattice: all that share the index along an axis. */
+  layerOf(index: number, axis: 0 | 1 | 2): number[] {
+    const place = this.place(index);
+    if (!place) return [index];
+    return this.where((other) => other[axis] === place[axis]);
+  }
+
+  /** The control point on the other side of the lattice; null where there is no lattice. */
+  mirrored(index: number, axis: 0 | 1 | 2): number | null {
+    const place = this.place(index);
+    if (!place) return null;
+    const other: Shape = [...place];
+    other[axis] = this.shape![axis] - 1 - place[axis];
+    return this.index(other);
+  }
+
+  choose(indices: Iterable<number>, how: "only" | "toggle" | "add"): void {
+    const given = [...indices];
+    if (how === "only") this.selected.clear();
+    for (const index of given) {
+      if (how === "toggle" && this.selected.has(index)) this.selected.delete(index);
+      else {
+        this.selected.add(index);
+        this.last = index;
+      }
+    }
+    if (this.last === null || !this.selected.has(this.last)) this.last = [...this.selected].at(-1) ?? null;
+  }
+
+  keepSelection(before: ControlPoints): void {
+    if (before.layer !== this.layer || before.count !== this.count) return;
+    for (const index of before.selected) this.selected.add(index);
+    this.last = before.last;
+  }
+
+  get center(): Vector3 {
+    const sum = new Vector3();
+    for (const index of this.selected) sum.add(this.at(index));
+    return sum.divideScalar(Math.max(this.selected.size, 1));
+  }
+
+  get box(): Box3 {
+    const box = new Box3();
+    for (const index of this.selected) box.expandByPoint(this.at(index));
+    return box;
+  }
+
+  private where(wanted: (place: Shape) => boolean): number[] {
+    return [...Array(this.count).keys()].filter((index) => wanted(this.place(index)!));
+  }
+}
+
+/** How strongly a neighbour follows, by its distance as part of the radius: a smooth hill. */
+export function falloff(part: number): number {
+  if (part >= 1) return 0;
+  const rest = 1 - part * part;
+  return rest * rest;
+}
+
+/** A drag of control points: where they began, how strongly each follows, and who mirrors whom. */
+export class PointMotion {
+  readonly indices: Uint32Array;
+  private readonly start: Float64Array;
+  private readonly weights = new Map<number, number>();
+  private readonly mirrors: [number, number][] = [];
+
+  constructor(
+    private readonly points: ControlPoints,
+    softRadius: number | null,
+    private readonly mirrorAxis: 0 | 1 | 2 | null,
+  ) {
+    this.start = points.now.slice();
+    for (const index of points.selected) if (!points.locked.has(index)) this.weights.set(index, 1);
+    if (softRadius) this.addSoft(softRadius);
+    if (mirrorAxis !== null && points.shape) this.addMirrors(mirrorAxis);
+    this.indices = Uint32Array.from(new Set([...this.weights.keys(), ...this.mirrors.map(([, to]) => to)]));
+  }
+
+  weight(index: number): number {
+    return this.weights.get(index) ?? 0;
+  }
+
+  translate(by: Vector3): void {
+    this.each((start) => by.clone().add(start));
+  }
+
+  transform(matrix: Matrix4): void {
+    this.each((start) => start.clone().applyMatrix4(matrix));
+  }
+
+  undo(): void {
+    this.points.now.set(this.start);
+  }
+
+  /** (k, 3) where the moved ones are now. */
+  get positions(): Float64Array {
+    const out = new Float64Array(3 * this.indices.length);
+    this.indices.forEach((index, i) => out.set(this.points.now.subarray(3 * index, 3 * index + 3), 3 * i));
+    return out;
+  }
+
+  private each(image: (start: Vector3) => Vector3): void {
+    const start = new Vector3();
+    for (const [index, weight] of this.weights) {
+      start.fromArray(this.start, 3 * index);
+      image(start).sub(start).multiplyScalar(weight).add(start).toArray(this.points.now, 3 * index);
+    }
+    for (const [from, to] of this.mirrors) this.reflect(from, to);
+  }
+
+  private reflect(from: number, to: number): void {
+    const axis = this.points.axes[this.mirrorAxis!]!;
+    const moved = this.points.at(from).sub(new Vector3().fromArray(this.start, 3 * from));
+    moved.addScaledVector(axis, (from === to ? -1 : -2) * moved.dot(axis));
+    moved.add(new Vector3().fromArray(this.start, 3 * to)).toArray(this.points.now, 3 * to);
+  }
+
+  private addSoft(radius: number): void {
+    const chosen = [...this.weights.keys()].map((index) => new Vector3().fromArray(this.points.rest, 3 * index));
+    const at = new Vector3();
+    for (let i = 0; i < this.points.count; i++) {
+      if (this.weights.has(i) || this.points.locked.has(i)) continue;
+      at.fromArray(this.points.rest, 3 * i);
+      const nearest = chosen.reduce((least, each) => Math.min(least, each.distanceTo(at)), Infinity);
+      const weight = falloff(nearest / radius);
+      if (weight > 0) this.weights.set(i, weight);
+    }
+  }
+
+  private addMirrors(axis: 0 | 1 | 2): void {
+    for (const index of [...this.weights.keys()]) {
+      const other = this.points.mirrored(index, axis)!;
+      if ((other === index || !this.weights.has(other)) && !this.points.locked.has(other)) this.mirrors.push([index, other]);
+    }
+  }
+}

@@ -1,0 +1,87 @@
+// A drag as the server sees it: begun, moved as often as it answers, committed as one entry of the history.
+
+import type { Numbers } from "../transport/frame";
+import { Latest } from "../transport/latest";
+import type { Studio } from "../studio";
+
+interface Job {
+  values: Record<string, unknown>;
+  arrays: Record<string, Numbers>;
+  began: number;
+}
+
+/** How long the last move took until it was drawn, in milliseconds: for benchmarks. */
+export const latencies: number[] = [];
+
+export class LayerDrag {
+  private readonly latest: Latest<Job>;
+  private index: Numbers | null = null;
+  private ended = false;
+
+  constructor(
+    private readonly studio: Studio,
+    private readonly prefix: "drag" | "pull" | "preview",
+    begin: Record<string, unknown>,
+    private readonly onAnswer: (arrays: Record<string, Numbers>) => void = () => undefined,
+  ) {
+    this.latest = new Latest((job) => this.send(job));
+    void studio.ask(`${prefix}.begin`, begin).then((answer) => {
+      if (!answer) this.ended = true;
+    });
+  }
+
+  move(values: Record<string, unknown>, arrays: Record<string, Numbers>): void {
+    if (!this.ended) this.latest.push({ values, arrays, began: performance.now() });
+  }
+
+  /** When the last move has been answered. */
+  answered(): Promise<void> {
+    return this.latest.idle();
+  }
+
+  async commit(): Promise<void> {
+    await this.latest.idle();
+    if (!this.ended) await this.studio.ask(`${this.prefix}.commit`);
+    this.ended = true;
+  }
+
+  async cancel(): Promise<void> {
+    this.latest.clear();
+    this.ended = true;
+    await this.studio.ask(`${this.prefix}.cancel`);
+  }
+
+  private async send(job: Job): Promise<void> {
+    const answer = await this.studio.ask(`${this.prefix}.move`, job.values, job.arrays);
+    if (!answer || this.ended) return;
+    const { arrays, head } = answer;
+    if (arrays["index"]) this.index = arrays["index"];
+    if (arrays["positions"]) {
+      this.studio.mesh.move(
+        head["all"] ? null : this.index,
+        widened(arrays["positions"], head["low"] as number[], head["high"] as number[]),
+        arrays["normals"]!,
+      );
+      this.studio.pointsMoved.set(this.studio.pointsMoved.value + 1);
+    }
+    this.onAnswer(arrays);
+    const stop = this.studio.viewport.drawn.onChange(() => {
+      stop();
+      latencies.push(performance.now() - job.began);
+      if (latencies.length > 500) latencies.shift();
+    });
+    this.studio.viewport.request();
+  }
+}
+
+/** Positions from 16 bits a coordinate in a box. */
+export function widened(values: Numbers, low: number[], high: number[]): Float32Array {
+  const out = new Float32Array(values.length);
+  const step = [0, 1, 2].map((k) => (high[k]! - low[k]!) / 65535);
+  for (let i = 0; i < values.length; i += 3) {
+    out[i] = low[0]! + values[i]! * step[0]!;
+    out[i + 1] = low[1]! + values[i + 1]! * step[1]!;
+    out[i + 2] = low[2]! + values[i + 2]! * step[2]!;
+  }
+  return out;
+}

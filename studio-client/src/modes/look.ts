@@ -1,0 +1,13 @@
+// Look: every drag turns the view.
+
+import { registerMode } from "./mode";
+
+registerMode(() => ({
+  id: "look",
+  icon: "view",
+  title: "modeView",
+  hint: "hintView",
+  shortcut: "1",
+  enter: () => undefined,
+  leave: () => undefined,
+}));

@@ -1,0 +1,48 @@
+// A mode: what the pointer and the keys mean, and a panel. A new one registers itself here, and stands in the rail.
+
+import type { IconName } from "../core/icons";
+import type { StringKey } from "../core/strings";
+import type { Studio } from "../studio";
+
+/** Where the pointer is on the canvas, in CSS pixels from its upper left corner. */
+export interface Pointer {
+  x: number;
+  y: number;
+  shift: boolean;
+  alt: boolean;
+  ctrl: boolean;
+  touch: boolean;
+}
+
+export interface Mode {
+  readonly id: string;
+  readonly icon: IconName;
+  readonly title: StringKey;
+  readonly hint: StringKey;
+  readonly shortcut: string;
+  enter(): void;
+  leave(): void;
+  /** True where the mode takes the pointer, which then does not turn the view. */
+  down?(pointer: Pointer): boolean;
+  move?(pointer: Pointer): void;
+  up?(pointer: Pointer): void;
+  hover?(pointer: Pointer): void;
+  /** True where the key is used up. */
+  key?(event: KeyboardEvent): boolean;
+  /** What stands above the canvas while the mode is on. */
+  toolbar?(): HTMLElement;
+  /** A section of the inspector. */
+  panel?(): { title: StringKey; body: HTMLElement };
+  /** The box of what is selected, to be framed. */
+  selectionBox?(): import("three").Box3 | null;
+}
+
+export type ModeMaker = (studio: Studio) => Mode;
+
+const makers: ModeMaker[] = [];
+
+export function registerMode(maker: ModeMaker): void {
+  makers.push(maker);
+}
+
+export const makeModes = (studio: Studio): Mode[] => makers.map((make) => make(studio));

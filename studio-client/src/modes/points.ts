@@ -1,0 +1,351 @@
+// Control points by hand: of a lattice, of sites, of a cage: of any deformer whose controls are positions.
+
+import { Plane, Vector3 } from "three";
+import type { Studio } from "../studio";
+import { Gizmo } from "../view/gizmo";
+import { Handles } from "../view/handles";
+import { h } from "../core/dom";
+import { ControlPoints, PointMotion } from "./control_points";
+import { LayerDrag } from "./layer_drag";
+import { registerMode, type Mode, type Pointer } from "./mode";
+import { PointsPanel } from "./points_panel";
+import { PointTools, type Axis } from "./points_tools";
+
+const SLOP = 3; // pixels that a click may wander
+
+interface Grab {
+  at: Vector3;
+  plane: Plane;
+  from: Pointer;
+  motion: PointMotion | null;
+}
+
+export class PointsMode implements Mode {
+  readonly id = "points";
+  readonly icon = "points";
+  readonly title = "modePoints";
+  readonly hint = "hintPoints";
+  readonly shortcut = "2";
+  points: ControlPoints | null = null;
+  readonly tools: PointTools;
+  private handles: Handles | null = null;
+  private gizmo: Gizmo | null = null;
+  private readonly side: PointsPanel;
+  private readonly frame = h("div", { class: "selection-frame", hidden: true });
+  private grab: Grab | null = null;
+  private drag: LayerDrag | null = null;
+  private motion: PointMotion | null = null;
+  private corner: Pointer | null = null;
+  private hovered: number | null = null;
+  private stops: (() => void)[] = [];
+  private asked = 0;
+
+  constructor(private readonly studio: Studio) {
+    this.tools = new PointTools(studio);
+    this.side = new PointsPanel({
+      place: (position) => void this.placeLast(position),
+      reset: (all) => void this.reset(all),
+      lock: (locked) => void this.lock(locked),
+      chooseLayer: (axis, index) => this.chooseLayer(axis, index),
+      chooseAll: () => this.chooseAll(),
+    });
+  }
+
+  enter(): void {
+    const { studio } = this;
+    this.handles = new Handles(studio.viewport);
+    this.gizmo = new Gizmo(studio.viewport);
+    this.gizmo.onBegin = () => this.begin();
+    this.gizmo.onMove = (matrix) => this.step((motion) => motion.transform(matrix));
+    this.gizmo.onEnd = () => void this.finish();
+    studio.viewport.element.append(this.frame);
+    this.stops = [
+      studio.session.scene.onChange(() => void this.load()),
+      studio.activeLayer.onChange(() => void this.load()),
+      studio.settings.all.onChange(() => this.look()),
+      this.tools.state.watch(() => this.followTools()),
+    ];
+    void this.load();
+  }
+
+  leave(): void {
+    for (const stop of this.stops) stop();
+    this.handles?.dispose();
+    this.gizmo?.dispose();
+    this.frame.remove();
+    this.points = this.handles = this.gizmo = null;
+    this.studio.viewport.request();
+  }
+
+  toolbar(): HTMLElement {
+    return this.tools.bar();
+  }
+
+  panel(): { title: "selection"; body: HTMLElement } {
+    return { title: "selection", body: this.side.element };
+  }
+
+  selectionBox(): import("three").Box3 | null {
+    return this.points?.selected.size ? this.points.box : null;
+  }
+
+  down(pointer: Pointer): boolean {
+    this.gizmo?.useCamera();
+    if (this.gizmo?.hot) return false;
+    const { points, handles } = this;
+    if (!points || !handles) return false;
+    const found = handles.pick(pointer.x, pointer.y, pointer.touch ? 26 : undefined);
+    if (found === null) {
+      if (!this.tools.now.rectangle && !pointer.shift) return false;
+      this.corner = pointer;
+      return true;
+    }
+    if (pointer.alt) points.choose(points.layerOf(found, this.facingAxis()), pointer.shift ? "add" : "only");
+    else if (pointer.shift) points.choose([found], "toggle");
+    else if (!points.selected.has(found)) points.choose([found], "only");
+    else points.last = found;
+    this.look();
+    const at = points.at(found);
+    const plane = new Plane().setFromNormalAndCoplanarPoint(this.studio.viewport.cameras.direction(), at);
+    this.grab = { at, plane, from: pointer, motion: null };
+    return true;
+  }
+
+  move(pointer: Pointer): void {
+    if (this.corner) this.stretch(pointer);
+    const { grab } = this;
+    if (!grab) return;
+    if (!this.motion) {
+      if (Math.hypot(pointer.x - grab.from.x, pointer.y - grab.from.y) < SLOP || !this.points?.selected.size) return;
+      this.begin();
+    }
+    const to = this.onPlane(pointer, grab);
+    if (to) this.step((motion) => motion.translate(this.tools.restrained(to.sub(grab.at))));
+  }
+
+  up(pointer: Pointer): void {
+    if (this.corner) this.takeRectangle(pointer);
+    this.grab = null;
+    if (this.motion) void this.finish();
+  }
+
+  hover(pointer: Pointer): void {
+    const found = this.handles?.pick(pointer.x, pointer.y) ?? null;
+    if (found === this.hovered) return;
+    this.hovered = found;
+    this.studio.viewport.canvas.style.cursor = found === null ? "" : "grab";
+    this.look();
+  }
+
+  key(event: KeyboardEvent): boolean {
+    const axis = "xyz".indexOf(event.key.toLowerCase());
+    const keys: Record<string, () => void> = {
+      g: () => this.tools.change({ tool: "translate" }),
+      r: () => this.tools.change({ tool: "rotate" }),
+      s: () => this.tools.change({ tool: "scale" }),
+      b: () => this.tools.change({ rectangle: !this.tools.now.rectangle }),
+      o: () => this.tools.change({ soft: !this.tools.now.soft }),
+      n: () => this.tools.change({ snap: !this.tools.now.snap }),
+      a: () => this.chooseAll(),
+      delete: () => void this.reset(false),
+      backspace: () => void this.reset(false),
+      escape: () => this.escape(),
+    };
+    if (axis >= 0) this.tools.change({ axis: this.tools.now.axis === axis ? null : (axis as Axis) });
+    else if (keys[event.key.toLowerCase()]) keys[event.key.toLowerCase()]!();
+    else return false;
+    return true;
+  }
+
+  /** Where a control point is on the screen. */
+  screen(index: number): { x: number; y: number } | null {
+    return this.points ? this.studio.viewport.project(this.points.at(index)) : null;
+  }
+
+  /** Move a control point by equal steps, as fast as the answers come: what benchmarks measure. */
+  async dragBySteps(index: number, moves: number, by: Vector3): Promise<void> {
+    if (!this.points) return;
+    this.points.choose([index], "only");
+    this.begin();
+    for (let i = 1; i <= moves; i++) {
+      this.step((motion) => motion.translate(by.clone().multiplyScalar(i)));
+      await this.drag?.answered();
+    }
+    await this.finish();
+  }
+
+  chooseLayer(axis: Axis, index: number): void {
+    const { points } = this;
+    if (!points?.shape) return;
+    const place: [number, number, number] = [0, 0, 0];
+    place[axis] = Math.min(Math.max(index, 0), points.shape[axis] - 1);
+    points.choose(points.layerOf(points.index(place), axis), "only");
+    this.look();
+  }
+
+  private chooseAll(): void {
+    const { points } = this;
+    if (!points) return;
+    const all = points.selected.size === points.count;
+    points.choose(all ? [] : [...Array(points.count).keys()], "only");
+    this.look();
+  }
+
+  private escape(): void {
+    if (this.motion) {
+      this.motion.undo();
+      this.motion = this.grab = null;
+      void this.drag?.cancel();
+      this.drag = null;
+      this.handles?.move();
+    } else this.points?.choose([], "only");
+    this.look();
+  }
+
+  /** Fetch the control points of the active layer. */
+  private async load(): Promise<void> {
+    const { layer } = this.studio;
+    const ticket = ++this.asked;
+    if (!layer || !layer.points) {
+      this.points = null;
+      this.handles?.load(new Float64Array(), new Uint32Array());
+      this.look();
+      return;
+    }
+    if (this.drag) return; // the drag's end brings another scene
+    const answer = await this.studio.ask("points.get", { layer: layer.name });
+    if (!answer || ticket !== this.asked || this.drag || !this.handles) return;
+    const before = this.points;
+    this.points = new ControlPoints(layer.name, layer.shape, answer);
+    if (before) this.points.keepSelection(before);
+    this.handles.load(this.points.now, this.points.links);
+    this.look();
+  }
+
+  private begin(): void {
+    const { points, tools } = this;
+    if (!points) return;
+    this.motion = new PointMotion(points, tools.softRadius, tools.now.mirror);
+    this.drag = new LayerDrag(this.studio, "drag", { layer: points.layer });
+    this.look();
+  }
+
+  private step(apply: (motion: PointMotion) => void): void {
+    const { motion, points } = this;
+    if (!motion || !points) return;
+    apply(motion);
+    this.handles?.move();
+    this.side.follow(points);
+    this.drag?.move({}, { index: motion.indices, positions: motion.positions });
+    if (!this.gizmo?.dragging) this.gizmo?.place(this.pivot());
+  }
+
+  private async finish(): Promise<void> {
+    const { drag } = this;
+    this.motion = null;
+    if (!drag) return;
+    await drag.commit();
+    this.drag = null;
+    await this.load();
+  }
+
+  private async placeLast(position: Float64Array): Promise<void> {
+    const { points } = this;
+    if (!points || points.last === null) return;
+    await this.studio.ask("points.set", { layer: points.layer }, { index: Uint32Array.of(points.last), positions: position });
+  }
+
+  private async reset(all: boolean): Promise<void> {
+    const { points } = this;
+    if (!points || (!all && !points.selected.size)) return;
+    const index = all ? {} : { index: Uint32Array.from(points.selected) };
+    await this.studio.ask("points.reset", { layer: points.layer }, index);
+  }
+
+  private async lock(locked: boolean): Promise<void> {
+    const { points } = this;
+    if (!points) return;
+    await this.studio.ask("points.lock", { layer: points.layer, locked }, { index: Uint32Array.from(points.selected) });
+  }
+
+  private stretch(pointer: Pointer): void {
+    const [left, right] = [this.corner!.x, pointer.x].sort((a, b) => a - b) as [number, number];
+    const [top, bottom] = [this.corner!.y, pointer.y].sort((a, b) => a - b) as [number, number];
+    this.frame.hidden = false;
+    Object.assign(this.frame.style, {
+      left: `${left}px`,
+      top: `${top}px`,
+      width: `${right - left}px`,
+      height: `${bottom - top}px`,
+    });
+  }
+
+  private takeRectangle(pointer: Pointer): void {
+    const from = this.corner!;
+    this.corner = null;
+    this.frame.hidden = true;
+    const found = this.handles!.within(
+      Math.min(from.x, pointer.x),
+      Math.min(from.y, pointer.y),
+      Math.max(from.x, pointer.x),
+      Math.max(from.y, pointer.y),
+    );
+    this.points?.choose(found, from.shift ? "add" : "only");
+    this.look();
+  }
+
+  private onPlane(pointer: Pointer, { at, plane }: Grab): Vector3 | null {
+    const { ray } = this.studio.viewport.ray(pointer.x, pointer.y);
+    const { axis } = this.tools.now;
+    if (axis === null) return ray.intersectPlane(plane, new Vector3());
+    const along = new Vector3().setComponent(axis, 1e6 * this.tools.diagonal);
+    const nearest = new Vector3();
+    ray.distanceSqToSegment(at.clone().sub(along), at.clone().add(along), undefined, nearest);
+    return nearest;
+  }
+
+  /** The lattice axis that looks most towards the eye: its layers are what Alt-click takes. */
+  private facingAxis(): Axis {
+    const eye = this.studio.viewport.cameras.direction();
+    const facing = this.points!.axes.map((axis) => Math.abs(axis.dot(eye)));
+    return facing.indexOf(Math.max(...facing)) as Axis;
+  }
+
+  private pivot(): Vector3 | null {
+    const { points } = this;
+    if (!points?.selected.size) return null;
+    if (this.tools.now.pivot === "origin") return new Vector3();
+    return this.tools.now.pivot === "last" && points.last !== null ? points.at(points.last) : points.center;
+  }
+
+  private followTools(): void {
+    const { tool, snap, axis } = this.tools.now;
+    this.gizmo?.setTool(tool);
+    this.gizmo?.setAxis(axis);
+    this.gizmo?.setSnap(snap ? this.tools.step : null);
+    this.look();
+  }
+
+  /** Colours, gizmo and panel follow what is selected. */
+  private look(): void {
+    const { points, handles, motion } = this;
+    const palette = this.studio.palette;
+    handles?.setColors(
+      (index) => {
+        if (points?.selected.has(index)) return palette.selected;
+        if (points?.locked.has(index)) return palette.locked;
+        const weight = motion?.weight(index) ?? 0;
+        if (weight > 0) return palette.handle.clone().lerp(palette.selected, weight);
+        return index === this.hovered ? palette.hovered : palette.handle;
+      },
+      (index) => (index === this.hovered ? 1.35 : points?.selected.has(index) ? 1.2 : 1),
+      palette.lattice,
+    );
+    this.gizmo?.useCamera();
+    this.gizmo?.place(this.pivot());
+    this.side.show(points);
+    this.studio.viewport.request();
+  }
+}
+
+registerMode((studio) => new PointsMode(studio));

@@ -1,0 +1,128 @@
+// How control points are moved: tool, soft selection, mirror, snapping, pivot, the axis that a drag is locked to.
+
+import { Vector3 } from "three";
+import { h, replace } from "../core/dom";
+import { Signal } from "../core/signal";
+import { t } from "../core/strings";
+import type { Studio } from "../studio";
+import { iconButton, numberField, press, select, slider, toggle } from "../panels/controls";
+import type { Tool } from "../view/gizmo";
+import { roundStep } from "../view/ground";
+
+export type Axis = 0 | 1 | 2;
+export type Pivot = "center" | "origin" | "last";
+
+export interface Tools {
+  tool: Tool;
+  rectangle: boolean;
+  soft: boolean;
+  /** As part of the shape's diagonal. */
+  radius: number;
+  mirror: Axis | null;
+  snap: boolean;
+  step: number;
+  pivot: Pivot;
+  axis: Axis | null;
+}
+
+export class PointTools {
+  readonly state = new Signal<Tools>({
+    tool: "translate",
+    rectangle: false,
+    soft: false,
+    radius: 0.2,
+    mirror: null,
+    snap: false,
+    step: 0,
+    pivot: "center",
+    axis: null,
+  });
+
+  constructor(private readonly studio: Studio) {}
+
+  get now(): Tools {
+    return this.state.value;
+  }
+
+  change(part: Partial<Tools>): void {
+    this.state.set({ ...this.now, ...part });
+  }
+
+  get diagonal(): number {
+    return this.studio.scene?.mesh?.diagonal ?? 1;
+  }
+
+  get step(): number {
+    return this.now.step || roundStep(this.diagonal / 50);
+  }
+
+  get softRadius(): number | null {
+    return this.now.soft ? this.now.radius * this.diagonal : null;
+  }
+
+  /** A move as the lock and the snapping allow it. */
+  restrained(move: Vector3): Vector3 {
+    const { axis, snap } = this.now;
+    const kept = axis === null ? move : new Vector3().setComponent(axis, move.getComponent(axis));
+    if (!snap) return kept;
+    return new Vector3(...kept.toArray().map((value) => Math.round(value / this.step) * this.step));
+  }
+
+  /** The bar above the canvas. */
+  bar(): HTMLElement {
+    const element = h("div", { class: "toolbar", role: "toolbar" });
+    this.state.watch(() => this.fill(element));
+    return element;
+  }
+
+  private fill(element: HTMLElement): void {
+    const { now } = this;
+    const tool = (name: Tool, iconName: "move" | "rotate" | "scale", label: string): HTMLElement => {
+      const each = iconButton(iconName, label, () => this.change({ tool: name }));
+      press(each, now.tool === name);
+      return each;
+    };
+    replace(
+      element,
+      tool("translate", "move", `${t("toolMove")} (G)`),
+      tool("rotate", "rotate", `${t("toolRotate")} (R)`),
+      tool("scale", "scale", `${t("toolScale")} (S)`),
+      separator(),
+      toggle("rectangle", `${t("toolRectangle")} (B)`, now.rectangle, (rectangle) => this.change({ rectangle })),
+      separator(),
+      toggle("soft", `${t("soft")} (O)`, now.soft, (soft) => this.change({ soft })),
+      now.soft && this.radiusSlider(),
+      toggle("magnet", `${t("snap")} (N)`, now.snap, (snap) => this.change({ snap })),
+      now.snap && numberField(this.step, (step) => this.change({ step }), { label: t("snapStep"), low: 1e-9, step: this.step }),
+      separator(),
+      h("span", { class: "toolbar-label" }, t("mirror")),
+      this.mirrorChoice(),
+      h("span", { class: "toolbar-label" }, t("pivot")),
+      this.pivotChoice(),
+    );
+  }
+
+  private radiusSlider(): HTMLElement {
+    return slider(this.now.radius, {
+      label: t("radius"),
+      low: 0.02,
+      high: 1,
+      step: 0.01,
+      text: (value) => `${Math.round(100 * value)} %`,
+      ondone: (radius) => this.change({ radius }),
+    });
+  }
+
+  private mirrorChoice(): HTMLElement {
+    const choices = [["", t("mirrorOff")], ["0", "i"], ["1", "j"], ["2", "k"]] as const;
+    const now = this.now.mirror === null ? "" : (String(this.now.mirror) as "0" | "1" | "2");
+    return select(choices, now, (value) => this.change({ mirror: value === "" ? null : (Number(value) as Axis) }), t("mirror"));
+  }
+
+  private pivotChoice(): HTMLElement {
+    const choices = [["center", t("pivotCenter")], ["last", t("pivotLast")], ["origin", t("pivotOrigin")]] as const;
+    return select(choices, this.now.pivot, (pivot) => this.change({ pivot }), t("pivot"));
+  }
+}
+
+export const separator = (): HTMLElement => h("span", { class: "separator", "aria-hidden": "true" });

@@ -1,0 +1,67 @@
+// What commands do, whether a button, a menu or a key asks for them.
+
+import { save } from "../core/files";
+import { t } from "../core/strings";
+import type { Studio } from "../studio";
+import { openMenu } from "./deformer_menu";
+import { openExport } from "./export_dialog";
+import { openHelp } from "./help";
+import type { Opening } from "./opening";
+
+export class Actions {
+  constructor(
+    private readonly studio: Studio,
+    private readonly opening: Opening,
+  ) {}
+
+  undo(): void {
+    void this.studio.ask("history.undo");
+  }
+
+  redo(): void {
+    void this.studio.ask("history.redo");
+  }
+
+  home(): void {
+    if (this.studio.scene?.mesh) void this.studio.ask("scene.close");
+  }
+
+  export(): void {
+    openExport(this.studio);
+  }
+
+  help(): void {
+    openHelp(this.studio);
+  }
+
+  openMenu(anchor: HTMLElement): void {
+    openMenu(this.studio.root, anchor, [
+      { label: t("openFile"), icon: "open", keys: "Ctrl-O", run: () => this.opening.choose() },
+      { label: t("openFromFolder"), icon: "file", run: () => void this.opening.browse() },
+      null,
+      { label: t("home"), icon: "home", run: () => this.home() },
+    ]);
+  }
+
+  open(): void {
+    this.opening.choose();
+  }
+
+  /** The project goes where the browser puts downloads; the server remembers that it was saved. */
+  async saveProject(): Promise<void> {
+    const answer = await this.studio.ask("project.save");
+    if (!answer) return;
+    const name = answer.head["name"] as string;
+    save(new Blob([answer.arrays["file"] as Uint8Array<ArrayBuffer>]), name);
+    this.studio.toasts.info(`${t("saved")}: ${name}`);
+  }
+
+  save(): void {
+    if (this.studio.scene?.mesh) void this.saveProject();
+  }
+
+  frame(): void {
+    const box = this.studio.mode.value?.selectionBox?.() ?? undefined;
+    this.studio.frame(box);
+  }
+}

@@ -1,0 +1,107 @@
+// The menu of deformers, made from the server's catalogue: one that is new in the library stands in it.
+
+import { h, replace } from "../core/dom";
+import { icon } from "../core/icons";
+import { t, type StringKey } from "../core/strings";
+import type { Studio } from "../studio";
+import type { Kind } from "../transport/protocol";
+import { newLattice } from "./lattice_dialog";
+
+const GROUPS: Record<string, StringKey> = { lattice: "groupLattices", shape: "groupShapes", field: "groupFields" };
+const LATTICES = ["bspline-ffd", "bezier-ffd"];
+
+export function chooseDeformer(studio: Studio, anchor: HTMLElement): void {
+  const list = h("div", { class: "menu-list" });
+  const search = h("input", { class: "search", type: "search", placeholder: t("searchDeformers"), "aria-label": t("searchDeformers") });
+  const menu = h("div", { class: "popover deformer-menu", role: "menu", popover: "auto" }, search, list);
+  const close = (): void => menu.hidePopover();
+  const fill = (): void => {
+    const word = search.value.trim().toLowerCase();
+    const kinds = (studio.session.catalogue.value?.kinds ?? []).filter((kind) =>
+      `${kind.title} ${kind.summary}`.toLowerCase().includes(word),
+    );
+    replace(list, ...Object.entries(GROUPS).flatMap(([group, title]) => inGroup(studio, kinds, group, t(title), close)));
+  };
+  search.addEventListener("input", fill);
+  search.addEventListener("keydown", (event) => {
+    if (event.key === "Enter") list.querySelector<HTMLElement>("button")?.click();
+    event.stopPropagation();
+  });
+  fill();
+  showPopover(studio.root, menu, anchor);
+  search.focus();
+}
+
+function inGroup(studio: Studio, kinds: Kind[], group: string, title: string, close: () => void): HTMLElement[] {
+  const own = kinds.filter((kind) => kind.group === group);
+  if (!own.length) return [];
+  return [h("div", { class: "menu-title" }, title), ...own.map((kind) => item(studio, kind, close))];
+}
+
+function item(studio: Studio, kind: Kind, close: () => void): HTMLElement {
+  const choose = (): void => {
+    close();
+    if (LATTICES.includes(kind.name)) newLattice(studio, kind.name === "bspline-ffd" ? "bspline" : "bezier");
+    else void studio.ask("layers.add", { kind: kind.name }).then((answer) => {
+      if (answer) studio.activeLayer.set(answer.head["layer"] as string);
+    });
+  };
+  return h(
+    "button",
+    { class: "menu-item", type: "button", role: "menuitem", onclick: choose, "data-kind": kind.name },
+    h("span", { class: "menu-item-title" }, kind.title),
+    h("span", { class: "muted" }, kind.summary),
+  );
+}
+
+/** A popover beside what opened it, within the window. */
+export function showPopover(root: HTMLElement, menu: HTMLElement, anchor: HTMLElement): void {
+  root.append(menu);
+  menu.addEventListener("toggle", (event) => {
+    if (event.newState === "closed") menu.remove();
+  });
+  menu.showPopover();
+  const at = anchor.getBoundingClientRect();
+  const { offsetWidth: wide, offsetHeight: high } = menu;
+  menu.style.left = `${Math.max(8, Math.min(at.right - wide, innerWidth - wide - 8))}px`;
+  menu.style.top = `${Math.max(8, Math.min(at.bottom + 6, innerHeight - high - 8))}px`;
+}
+
+export interface MenuEntry {
+  label: string;
+  icon?: Parameters<typeof icon>[0];
+  keys?: string;
+  checked?: boolean;
+  run: () => void;
+}
+
+/** A plain menu of commands. */
+export function openMenu(root: HTMLElement, anchor: HTMLElement, entries: (MenuEntry | null)[]): void {
+  const menu = h("div", { class: "popover", role: "menu", popover: "auto" });
+  for (const entry of entries) {
+    if (!entry) menu.append(h("hr"));
+    else {
+      const run = (): void => {
+        menu.hidePopover();
+        entry.run();
+      };
+      menu.append(
+        h(
+          "button",
+          {
+            class: "menu-item plain",
+            type: "button",
+            role: entry.checked === undefined ? "menuitem" : "menuitemcheckbox",
+            "aria-checked": entry.checked === undefined ? undefined : String(entry.checked),
+            onclick: run,
+          },
+          h("span", { class: "menu-icon" }, entry.checked ? (icon("check", 15) as unknown as Node) : entry.icon ? (icon(entry.icon, 16) as unknown as Node) : ""),
+          h("span", null, entry.label),
+          entry.keys ? h("kbd", null, entry.keys) : null,
+        ),
+      );
+    }
+  }
+  showPopover(root, menu, anchor);
+  menu.querySelector("button")?.focus();
+}

@@ -1,0 +1,42 @@
+// Small drawings of the examples.
+
+const SVG = "http://www.w3.org/2000/svg";
+
+/** Strokes on a 120 x 80 sheet; those after the bar are fainter. */
+const DRAWINGS: Record<string, [string, string]> = {
+  vase: [
+    "M47 70h26M48 70c-3-6-13-14-11-26 1-8 9-11 9-19 0-5-4-7-7-10h42c-3 3-7 5-7 10 0 8 8 11 9 19 2 12-8 20-11 26",
+    "M37 44c8 4 38 4 46 0M40 57c8 4 32 4 40 0M46 25c6 3 22 3 28 0M60 15v55M50 15c2 8-6 40 0 55M70 15c-2 8 6 40 0 55",
+  ],
+  torus: [
+    "M60 18c24 0 40 10 40 22s-16 22-40 22-40-10-40-22 16-22 40-22zM42 38c4 7 32 7 36 0M45 41c4-6 26-6 30 0",
+    "M60 18c6 4 6 18 0 25M60 62c-8-4-8-12 0-16M21 36c10-2 17 0 22 5M99 36c-10-2-17 0-22 5M32 25c9 4 12 8 14 14M88 25c-9 4-12 8-14 14",
+  ],
+  sphere: [
+    "M60 12a28 28 0 1 1 0 56 28 28 0 0 1 0-56z",
+    "M32 40c8 8 48 8 56 0M36 26c8 6 40 6 48 0M36 54c8 6 40 6 48 0M60 12c-16 12-16 44 0 56M60 12c16 12 16 44 0 56",
+  ],
+  bar: [
+    "M14 34 82 20l26 12-68 16zM14 34v18l26 14V48M40 66l68-16V32",
+    "M31 30.5l26 13.5v18M48 27l26 13v18M65 23.5 91 36v18M27 41v18.5l68-16",
+  ],
+  head: [
+    "M60 10c17 0 25 12 25 26 0 8-4 13-6 19-3 8-10 15-19 15s-16-7-19-15c-2-6-6-11-6-19 0-14 8-26 25-26z",
+    "M60 10v60M36 34c8 6 40 6 48 0M38 46c8 6 36 6 44 0M44 58c6 4 26 4 32 0M47 14c-6 18-6 36 3 53M73 14c6 18 6 36-3 53",
+  ],
+};
+
+export function thumbnail(name: string): Node {
+  const svg = document.createElementNS(SVG, "svg");
+  svg.setAttribute("viewBox", "0 0 120 80");
+  svg.setAttribute("class", "thumbnail");
+  svg.setAttribute("aria-hidden", "true");
+  const drawing = DRAWINGS[name] ?? DRAWINGS["sphere"]!;
+  drawing.forEach((strokes, i) => {
+    const path = document.createElementNS(SVG, "path");
+    path.setAttribute("d", strokes);
+    if (i === 1) path.setAttribute("class", "faint");
+    svg.append(path);
+  });
+  return svg;
+}

@@ -1,0 +1,108 @@
+// What travels: the scene as the server tells it, and what there is to choose from.
+
+export type FieldType =
+  | "number"
+  | "integer"
+  | "angle"
+  | "length"
+  | "vector"
+  | "axis"
+  | "choice"
+  | "bool"
+  | "text"
+  | "profile"
+  | "array"
+  | "deformer"
+  | "deformers"
+  | "mesh"
+  | "object";
+
+export interface Field {
+  name: string;
+  type: FieldType;
+  unit: string;
+  default: unknown;
+  required: boolean;
+  control: boolean;
+  range: [number, number] | null;
+  choices: string[];
+  doc: string;
+}
+
+export interface FieldValue extends Field {
+  value: unknown;
+  editable: boolean;
+}
+
+export interface Kind {
+  name: string;
+  title: string;
+  summary: string;
+  group: string;
+  makers: Record<string, Field[]>;
+}
+
+export interface Layer {
+  name: string;
+  kind: string;
+  title: string;
+  muted: boolean;
+  solo: boolean;
+  envelope: number;
+  fields: FieldValue[];
+  /** How many control points can be dragged, and their arrangement where they stand in a lattice. */
+  points: number;
+  shape: [number, number, number] | null;
+  linear: boolean;
+  transform: boolean;
+}
+
+export interface MeshFacts {
+  id: number;
+  name: string;
+  points: number;
+  faces: number;
+  bounds: [number[], number[]];
+  center: number[];
+  diagonal: number;
+  textured: boolean;
+  closed: boolean;
+}
+
+export interface SceneState {
+  revision: number;
+  name: string;
+  dirty: boolean;
+  mesh: MeshFacts | null;
+  layers: Layer[];
+  history: { labels: Label[]; position: number };
+}
+
+export interface Label {
+  key: string;
+  subject: string;
+}
+
+export interface MeshFormat {
+  name: string;
+  suffixes: string[];
+}
+
+export interface Example {
+  name: string;
+  title: string;
+  points: number;
+}
+
+export interface Catalogue {
+  version: string;
+  kinds: Kind[];
+  meshes: MeshFormat[];
+  readable: string[];
+  transforms: MeshFormat[];
+  quantities: string[];
+  examples: Example[];
+  recent: string[];
+  recoverable: { name: string; when: string }[];
+  caps: { upload: number; chunk: number };
+}

@@ -1,0 +1,101 @@
+// The gizmo that moves, turns and scales what is selected, about a pivot.
+
+import { Matrix4, Object3D, Quaternion, Vector3 } from "three";
+import { TransformControls } from "three/examples/jsm/controls/TransformControls.js";
+import type { Viewport } from "./viewport";
+
+export type Tool = "translate" | "rotate" | "scale";
+
+export class Gizmo {
+  onBegin: () => void = () => undefined;
+  onMove: (matrix: Matrix4) => void = () => undefined;
+  onEnd: () => void = () => undefined;
+  private readonly controls: TransformControls;
+  private readonly anchor = new Object3D();
+  private pivot = new Matrix4();
+
+  constructor(private readonly viewport: Viewport) {
+    const { controls, anchor } = this.make();
+    this.controls = controls;
+    viewport.helpers.add(anchor, controls.getHelper());
+  }
+
+  /** Whether the pointer is over an arrow or a ring, which then takes the click. */
+  get hot(): boolean {
+    return this.controls.enabled && this.controls.object !== undefined && this.controls.axis !== null;
+  }
+
+  get dragging(): boolean {
+    return this.controls.dragging;
+  }
+
+  setTool(tool: Tool): void {
+    this.controls.setMode(tool);
+    this.viewport.request();
+  }
+
+  setAxis(axis: 0 | 1 | 2 | null): void {
+    this.controls.showX = axis === null || axis === 0;
+    this.controls.showY = axis === null || axis === 1;
+    this.controls.showZ = axis === null || axis === 2;
+    this.viewport.request();
+  }
+
+  setSnap(step: number | null): void {
+    this.controls.setTranslationSnap(step);
+    this.controls.setRotationSnap(step === null ? null : Math.PI / 12);
+    this.controls.setScaleSnap(step === null ? null : 0.1);
+  }
+
+  place(at: Vector3 | null): void {
+    if (this.controls.dragging) return;
+    if (at === null) this.controls.detach();
+    else {
+      this.anchor.position.copy(at);
+      this.anchor.quaternion.identity();
+      this.anchor.scale.setScalar(1);
+      this.anchor.updateMatrixWorld();
+      this.controls.attach(this.anchor);
+    }
+    this.viewport.request();
+  }
+
+  /** Let go without finishing. */
+  cancel(): void {
+    this.controls.reset();
+  }
+
+  dispose(): void {
+    this.controls.detach();
+    this.viewport.helpers.remove(this.anchor, this.controls.getHelper());
+    this.controls.dispose();
+  }
+
+  private make(): { controls: TransformControls; anchor: Object3D } {
+    const controls = new TransformControls(this.viewport.cameras.active, this.viewport.canvas);
+    controls.setSize(0.85);
+    controls.addEventListener("change", () => this.viewport.request());
+    controls.addEventListener("objectChange", () => this.onMove(this.matrix()));
+    controls.addEventListener("dragging-changed", (event) => {
+      this.viewport.cameras.controls.enabled = !event.value;
+      if (event.value) {
+        this.pivot = this.anchor.matrixWorld.clone();
+        this.onBegin();
+      } else this.onEnd();
+    });
+    return { controls, anchor: this.anchor };
+  }
+
+  /** Follow the camera that is in use. */
+  useCamera(): void {
+    this.controls.camera = this.viewport.cameras.active;
+  }
+
+  /** What has happened to the anchor since the drag began, as a map of space. */
+  private matrix(): Matrix4 {
+    const { position, quaternion, scale } = this.anchor;
+    const kept = new Vector3(...scale.toArray().map((s) => (Math.abs(s) < 1e-3 ? Math.sign(s || 1) * 1e-3 : s)));
+    const now = new Matrix4().compose(position, new Quaternion().copy(quaternion), kept);
+    return now.multiply(this.pivot.clone().invert());
+  }
+}

@@ -1,0 +1,250 @@
+// The mesh: its buffers, updated in place, and the ways to paint it.
+
+import {
+  BufferAttribute,
+  BufferGeometry,
+  Box3,
+  DynamicDrawUsage,
+  Group,
+  LineBasicMaterial,
+  LineSegments,
+  Mesh,
+  Points,
+  PointsMaterial,
+  type Material,
+} from "three";
+import type { Numbers } from "../transport/frame";
+import { ColorMap } from "./color_map";
+import { MaterialSet, type MaterialFacts } from "./materials";
+import type { Palette } from "./colors";
+import type { Settings } from "../core/settings";
+
+export interface DrawnMesh {
+  /** Points of the mesh; those that seams split further are appended as twins of these. */
+  count: number;
+  positions: Float32Array;
+  normals: Int8Array;
+  triangles: Uint32Array;
+  twins: Uint32Array;
+  uvs: Float32Array | null;
+  parts: { material: number; start: number; count: number }[];
+  materials: MaterialFacts[];
+}
+
+export class MeshView {
+  readonly object = new Group();
+  readonly colorMap = new ColorMap();
+  readonly materials = new MaterialSet();
+  private geometry = new BufferGeometry();
+  private restGeometry: BufferGeometry | null = null;
+  private surface = new Mesh<BufferGeometry, Material | Material[]>();
+  private readonly wires = new LineSegments(
+    new BufferGeometry(),
+    new LineBasicMaterial({ transparent: true, opacity: 0.42, depthWrite: false }),
+  );
+  private readonly dots = new Points(new BufferGeometry(), new PointsMaterial({ size: 3, sizeAttenuation: false }));
+  private twins = new Uint32Array();
+  private count = 0;
+  private colored = false;
+  private parts: DrawnMesh["parts"] = [];
+
+  constructor(private readonly redraw: () => void) {
+    this.wires.renderOrder = 1;
+    this.object.add(this.surface, this.wires, this.dots);
+    this.wires.visible = this.dots.visible = false;
+    this.materials.onChange = redraw;
+  }
+
+  /** (n, 3) positions as they are drawn; the first `count` are the mesh's points. */
+  get positions(): Float32Array {
+    return this.position.array as Float32Array;
+  }
+
+  get pointCount(): number {
+    return this.count;
+  }
+
+  /** The mesh's point that a drawn vertex stands for. */
+  pointOf(vertex: number): number {
+    return vertex < this.count ? vertex : this.twins[vertex - this.count]!;
+  }
+
+  get target(): Mesh {
+    return this.surface;
+  }
+
+  get hasEdges(): boolean {
+    return this.wires.geometry.index !== null;
+  }
+
+  get box(): Box3 {
+    return this.count ? new Box3().setFromBufferAttribute(this.position) : new Box3();
+  }
+
+  load(mesh: DrawnMesh): void {
+    this.clear();
+    this.count = mesh.count;
+    this.twins = mesh.twins as Uint32Array<ArrayBuffer>;
+    this.parts = mesh.parts;
+    const geometry = new BufferGeometry();
+    geometry.setAttribute("position", dynamic(this.spread(mesh.positions, 3, Float32Array), 3));
+    geometry.setAttribute("normal", dynamic(this.spread(mesh.normals, 4, Int8Array), 4, true));
+    if (mesh.uvs) geometry.setAttribute("uv", new BufferAttribute(mesh.uvs, 2));
+    geometry.setIndex(new BufferAttribute(mesh.triangles, 1));
+    mesh.parts.forEach((part) => geometry.addGroup(part.start, part.count, part.material));
+    this.geometry = geometry;
+    this.surface.geometry = geometry;
+    this.surface.frustumCulled = false;
+    this.materials.load(mesh.materials, mesh.uvs !== null);
+    this.dots.geometry.setAttribute("position", this.position);
+    this.dots.visible = mesh.triangles.length === 0;
+    this.dots.frustumCulled = false;
+    this.paint();
+  }
+
+  clear(): void {
+    this.geometry.dispose();
+    this.restGeometry?.dispose();
+    this.restGeometry = null;
+    this.wires.geometry.dispose();
+    this.wires.geometry = new BufferGeometry();
+    this.surface.geometry = this.geometry = new BufferGeometry();
+    this.dots.visible = false;
+    this.count = 0;
+    this.colored = false;
+  }
+
+  /** Edges of the polygons, drawn from the same positions. */
+  setEdges(edges: Uint32Array): void {
+    this.wires.geometry.setAttribute("position", this.position);
+    this.wires.geometry.setIndex(new BufferAttribute(edges, 1));
+    this.wires.frustumCulled = false;
+  }
+
+  /** The shape before the deformation, for comparisons. */
+  setRest(positions: Float32Array, normals: Int8Array): void {
+    const rest = this.geometry.clone();
+    rest.setAttribute("position", new BufferAttribute(this.spread(positions, 3, Float32Array), 3));
+    rest.setAttribute("normal", new BufferAttribute(this.spread(normals, 4, Int8Array), 4, true));
+    rest.deleteAttribute("scalar");
+    this.restGeometry = rest;
+  }
+
+  get hasRest(): boolean {
+    return this.restGeometry !== null;
+  }
+
+  showSide(side: "before" | "after"): void {
+    const before = side === "before" && this.restGeometry !== null;
+    this.surface.geometry = before ? this.restGeometry! : this.geometry;
+    this.wires.userData["hidden"] = before;
+    this.surface.material = this.painting(before);
+  }
+
+  /** Move some points, or all: positions and normals of `index`, in place. */
+  move(index: Numbers | null, positions: ArrayLike<number>, normals: ArrayLike<number>): void {
+    const to = this.positions;
+    const bend = this.normal.array as Int8Array;
+    const count = index ? index.length : this.count;
+    let low = this.count;
+    let high = -1;
+    for (let i = 0; i < count; i++) {
+      const at = index ? index[i]! : i;
+      to[3 * at] = positions[3 * i]!;
+      to[3 * at + 1] = positions[3 * i + 1]!;
+      to[3 * at + 2] = positions[3 * i + 2]!;
+      bend[4 * at] = normals[3 * i]!;
+      bend[4 * at + 1] = normals[3 * i + 1]!;
+      bend[4 * at + 2] = normals[3 * i + 2]!;
+      if (at < low) low = at;
+      if (at > high) high = at;
+    }
+    if (high < low) return;
+    this.follow();
+    this.upload(low, high);
+    this.redraw();
+  }
+
+  setScalars(values: Float32Array | null): void {
+    this.colored = values !== null;
+    if (values) {
+      const existing = this.geometry.getAttribute("scalar") as BufferAttribute | undefined;
+      const spread = this.spread(values, 1, Float32Array);
+      if (existing) {
+        existing.array.set(spread);
+        existing.needsUpdate = true;
+      } else this.geometry.setAttribute("scalar", dynamic(spread, 1));
+    }
+    this.paint();
+    this.redraw();
+  }
+
+  apply(settings: Settings, palette: Palette): void {
+    this.materials.apply(settings, palette);
+    this.colorMap.setFlat(settings.shading === "flat");
+    this.wires.visible = settings.wireframe && this.hasEdges;
+    this.wires.material.color.copy(palette.wire);
+    this.dots.material.color.copy(palette.handle);
+    this.paint();
+    this.redraw();
+  }
+
+  private paint(): void {
+    this.surface.material = this.painting(false);
+  }
+
+  private painting(before: boolean): Material | Material[] {
+    if (this.colored && !before) return this.colorMap.material;
+    return this.parts.length ? this.materials.list : this.materials.list[0]!;
+  }
+
+  private get position(): BufferAttribute {
+    return this.geometry.getAttribute("position") as BufferAttribute;
+  }
+
+  private get normal(): BufferAttribute {
+    return this.geometry.getAttribute("normal") as BufferAttribute;
+  }
+
+  /** Values of points, with those of twins appended. */
+  private spread<T extends Float32Array | Int8Array>(
+    values: ArrayLike<number>,
+    size: number,
+    type: new (length: number) => T,
+  ): T {
+    const given = values.length / this.count === size ? size : Math.round(values.length / this.count);
+    const out = new type((this.count + this.twins.length) * size);
+    for (let i = 0; i < this.count + this.twins.length; i++) {
+      const from = i < this.count ? i : this.twins[i - this.count]!;
+      for (let k = 0; k < given; k++) out[size * i + k] = values[given * from + k]!;
+    }
+    return out;
+  }
+
+  private follow(): void {
+    const to = this.positions;
+    const bend = this.normal.array as Int8Array;
+    this.twins.forEach((from, i) => {
+      const at = this.count + i;
+      to.copyWithin(3 * at, 3 * from, 3 * from + 3);
+      bend.copyWithin(4 * at, 4 * from, 4 * from + 3);
+    });
+  }
+
+  private upload(low: number, high: number): void {
+    for (const attribute of [this.position, this.normal]) {
+      const size = attribute.itemSize;
+      attribute.addUpdateRange(low * size, (high - low + 1) * size);
+      if (this.twins.length) attribute.addUpdateRange(this.count * size, this.twins.length * size);
+      attribute.needsUpdate = true;
+    }
+    this.geometry.boundingSphere = null;
+    this.geometry.boundingBox = null;
+  }
+}
+
+function dynamic(array: Float32Array | Int8Array, size: number, normalized = false): BufferAttribute {
+  const attribute = new BufferAttribute(array, size, normalized);
+  attribute.setUsage(DynamicDrawUsage);
+  return attribute;
+}
