@@ -1,0 +1,7 @@
+"""Batches: one deformation for many files, on all processors or a cluster, and points that no memory holds."""
+
+from pliant.batch.outcome import Outcome as Outcome
+from pliant.batch.running import run_batch as run_batch
+from pliant.batch.sampling import sample as sample
+from pliant.batch.streaming import stream as stream
+from pliant.batch.streaming import stream_file as stream_file

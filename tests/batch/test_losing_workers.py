@@ -1,0 +1,115 @@
+"""Workers are killed while they work: every outcome comes exactly once, and the bytes are those of a serial run."""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+import os
+import signal
+import threading
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+from distributed import Client, LocalCluster
+
+import pliant as pl
+from pliant.batch.crews import Pool
+from pliant.batch.dispatch import outcomes
+from pliant.batch.outcome import Job
+from pliant.batch.parcel import sent
+from pliant.batch.plans import plan_of
+from pliant.examples import vase
+
+
+@pytest.fixture
+def many(cohort, tmp_path):
+    """A hundred and twenty files of twelve shapes."""
+    paths = []
+    for i in range(120):
+        path = tmp_path / "many" / f"{i:03d}.ply"
+        path.parent.mkdir(exist_ok=True)
+        path.write_bytes(cohort[i % 12].read_bytes())
+        paths.append(path)
+    return paths
+
+
+@contextlib.contextmanager
+def killer(living, *, seed, times):
+    """Now and then, one of the living is killed."""
+    random, over, killed = np.random.default_rng(seed), threading.Event(), []
+
+    def work():
+        while len(killed) < times and not over.wait(random.uniform(0.05, 0.25)):
+            with contextlib.suppress(ProcessLookupError, IndexError, ValueError):
+                pid = int(random.choice(living()))
+                os.kill(pid, signal.SIGKILL)
+                killed.append(pid)
+
+    thread = threading.Thread(target=work)
+    thread.start()
+    try:
+        yield killed
+    finally:
+        over.set()
+        thread.join()
+
+
+@pytest.fixture(scope="module")
+def cluster():
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)
+    with LocalCluster(
+        n_workers=3, threads_per_worker=1, dashboard_address=None, silence_logs=logging.CRITICAL
+    ) as local:
+        yield local
+
+
+def test_a_cluster_whose_workers_are_killed(cluster, stack, many, serial, tmp_path):
+    def living():
+        pids = [nanny.process.pid for nanny in cluster.workers.values() if nanny.process is not None]
+        return [pid for pid in pids if pid is not None]
+
+    with Client(cluster) as client:
+        run = pl.run_batch(stack, many, tmp_path / "out" / "{stem}.ply", executor=client)
+        found = [next(run)]
+        with killer(living, seed=1, times=6) as killed:
+            for outcome in run:
+                found.append(outcome)
+                time.sleep(0.01)  # a slow reader, so that workers die while there is work
+    assert killed
+    assert sorted(each.index for each in found) == list(range(120))
+    assert {each.status for each in found} == {"ok"}, [each.error for each in found if each.error]
+    assert all(each.output.read_bytes() == serial[each.index % 12] for each in found)
+    assert not [path for path in (tmp_path / "out").iterdir() if path.suffix not in (".ply", ".jsonl")]
+
+
+def test_a_pool_whose_processes_are_killed(stack, many, serial, tmp_path):
+    jobs = [Job(i, path, tmp_path / "out" / path.name) for i, path in enumerate(many)]
+    pool = Pool(2)
+    found = []
+    with (
+        sent(plan_of(stack), tmp_path, elsewhere=True) as parcel,
+        killer(lambda: list(pool._pool._processes or ()), seed=2, times=3) as killed,
+    ):
+        for outcome in outcomes(pool, parcel, jobs, strict=False):
+            found.append(outcome)
+            time.sleep(0.005)
+    pool.close()
+    assert killed
+    assert sorted(each.index for each in found) == list(range(120))
+    assert {each.status for each in found} == {"ok"}, [each.error for each in found if each.error]
+    assert all(each.output.read_bytes() == serial[each.index % 12] for each in found)
+
+
+def test_a_mesh_that_kills_its_workers_fails_alone(cohort, tmp_path, monkeypatch):
+    monkeypatch.syspath_prepend(Path(__file__).parent)
+    from deadly import Deadly
+
+    shape = vase(240.0, 16, 12)
+    pl.write(shape.with_points(shape.points - [0, 0, 300]), cohort[5])
+    deformer = Deadly(axis="z", angle=1.0, bounds=(0.0, 240.0))
+    found = {each.index: each for each in pl.run_batch(deformer, cohort, tmp_path / "out" / "{stem}.ply", workers=2)}
+    assert sorted(found) == list(range(12))
+    assert [i for i, each in sorted(found.items()) if each.status == "failed"] == [5]
+    assert "cost 3 workers" in found[5].error
