@@ -38,7 +38,7 @@ def two_vases():
     ],
 )
 def test_built_cages_pass_the_check_and_give_the_mesh_back(mesh, vertices):
-    cage = build_cage(mesh, vertices=vertices)
+    cage = build_cage(mesh, vertices=vertices, margin=0.04)
     report = check_cage(cage, mesh, vertices=vertices)
     assert report.ok, report.failures
     assert report.vertices <= vertices
@@ -88,6 +88,10 @@ def faulty():
         (small, "triangles of the mesh cut through it"),
         (PolygonMesh(np.vstack([box.points, [[0, 0, 0]]]), triangles), "1 vertices belong to no face, the first is 8"),
         (PolygonMesh(box.points), "it has no faces"),
+        (
+            box.with_points(np.where(np.arange(8)[:, None] == 1, box.points[0], box.points)),
+            "have no area, the first is",
+        ),
     ]
 
 

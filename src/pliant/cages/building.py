@@ -11,6 +11,7 @@ from pliant.cages.checking import check_cage
 from pliant.cages.extras import import_igl
 from pliant.cages.offset import offset_surface
 from pliant.cages.pushing import push_out
+from pliant.cages.symmetry import checked_axis, symmetrized, with_mirror_image
 from pliant.cages.wrapping import alpha_wrapped
 from pliant.errors import InvalidParameter, InvalidTarget, NotConverged
 from pliant.mesh import Points, PolygonMesh
@@ -21,6 +22,7 @@ Triangles = NDArray[np.int64]
 
 _OFFSETS = (0.02, 0.03, 0.045, 0.07, 0.1)  # of the diagonal, tried in turn
 _LEAST = 8  # vertices: a box
+_SHARES = (0.9, 0.75, 0.6, 0.45)  # of the vertices, for a cage whose half is doubled
 _DENSE = 24  # faces for each wanted vertex, before intersections are looked after
 
 
@@ -30,6 +32,7 @@ def build_cage(
     margin: float = 0.02,
     *,
     method: Literal["offset", "alpha_wrap"] = "offset",
+    symmetry: Literal["x", "y", "z"] | None = None,
 ) -> PolygonMesh:
     """A closed, oriented manifold of triangles that encloses a mesh and does not cut itself.
 
@@ -49,6 +52,9 @@ def build_cage(
     method
         ``"offset"``, or ``"alpha_wrap"``: CGAL's alpha wrapping (Portaneri et al. 2022), tighter, through pymeshlab,
         which is under the GPL and comes with the extra ``cages-gpl``.
+    symmetry
+        Make the cage exactly symmetric about the middle of the mesh's box across this axis; it encloses the mesh and
+        its mirror image.
 
     Raises
     ------
@@ -67,6 +73,8 @@ def build_cage(
         raise InvalidParameter(f"method is {method!r}; it must be 'offset' or 'alpha_wrap'")
     if not len(mesh.triangles) or not mesh.diagonal > 0:
         raise InvalidTarget("a cage is built around faces, and this mesh has none")
+    if symmetry is not None:
+        return _symmetric(mesh, vertices, margin, method, symmetry)
     if method == "alpha_wrap":
         return alpha_wrapped(mesh, vertices, margin)
     reason = ""
@@ -81,6 +89,22 @@ def build_cage(
     raise NotConverged(
         f"no cage of {vertices} vertices was found: {reason}. Allow more vertices, or a wider margin than {margin}"
     )
+
+
+def _symmetric(
+    mesh: PolygonMesh, vertices: int, margin: float, method: Literal["offset", "alpha_wrap"], axis: str
+) -> PolygonMesh:
+    """Half of a cage around the mesh and its mirror image, twice; with fewer vertices while there are too many."""
+    both, place = with_mirror_image(mesh, axis), float(mesh.center[checked_axis(axis)])
+    reason = ""
+    for share in _SHARES:
+        whole = build_cage(both, max(int(share * vertices), _LEAST), margin, method=method)
+        cage = symmetrized(whole, axis, place)
+        report = check_cage(cage, mesh, vertices=vertices)
+        if report.ok:
+            return cage
+        reason = "; ".join(report.failures)
+    raise NotConverged(f"no symmetric cage of {vertices} vertices was found: {reason}. Allow more vertices")
 
 
 def _simplified(points: Points, triangles: Triangles, vertices: int) -> tuple[Points, Triangles]:

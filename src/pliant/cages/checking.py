@@ -9,7 +9,7 @@ import numpy as np
 from pliant.cages.extras import import_manifold
 from pliant.mesh import PolygonMesh
 from pliant.numerics.closest_surface import TriangleSearch
-from pliant.numerics.manifold import Faults, manifold_faults, pieces
+from pliant.numerics.manifold import Faults, flat_triangles, manifold_faults, pieces
 from pliant.numerics.triangle_crossings import crossings, self_crossings
 from pliant.numerics.winding import signed_volume, winding_numbers
 
@@ -67,6 +67,9 @@ def check_cage(cage: PolygonMesh, mesh: PolygonMesh, *, vertices: int | None = N
     """
     faults = manifold_faults(cage.faces, len(cage.points))
     failures = _structure(cage, faults)
+    flat = flat_triangles(cage.points, cage.triangles)
+    if len(flat):
+        failures.append(f"{len(flat)} triangles have no area, the first is {flat[0]}")
     crossed = self_crossings(cage.points, cage.triangles)
     if len(crossed):
         failures.append(
@@ -94,7 +97,7 @@ def check_cage(cage: PolygonMesh, mesh: PolygonMesh, *, vertices: int | None = N
         components,
         _genus(cage, components) if faults.none else None,
         _tightness(cage, mesh),
-        _clearance(cage, mesh, outside),
+        _clearance(cage, mesh, outside, np.delete(cage.triangles, flat, axis=0)),
     )
 
 
@@ -142,10 +145,10 @@ def _tightness(cage: PolygonMesh, mesh: PolygonMesh) -> float | None:
     return float(signed_volume(cage.points, cage.triangles) / abs(volume))
 
 
-def _clearance(cage: PolygonMesh, mesh: PolygonMesh, outside: np.ndarray) -> float:
-    if not len(cage.triangles) or not len(mesh.points) or not mesh.diagonal > 0:
+def _clearance(cage: PolygonMesh, mesh: PolygonMesh, outside: np.ndarray, triangles: np.ndarray) -> float:
+    if not len(triangles) or not len(mesh.points) or not mesh.diagonal > 0:
         return 0.0
-    found = TriangleSearch(cage.points, cage.triangles).query(mesh.points)
+    found = TriangleSearch(cage.points, triangles).query(mesh.points)
     distance = np.linalg.norm(mesh.points - found.points, axis=1)
     distance[outside] *= -1
     return float(distance.min() / mesh.diagonal)

@@ -7,6 +7,7 @@ from numpy.typing import NDArray
 
 from pliant.mesh import Points, PolygonMesh
 from pliant.numerics.closest_surface import TriangleSearch
+from pliant.numerics.manifold import flat_triangles
 from pliant.numerics.triangle_crossings import crossings
 from pliant.numerics.winding import winding_numbers
 
@@ -43,7 +44,7 @@ def push_out(points: Points, triangles: Triangles, mesh: PolygonMesh, clearance:
     corners = mesh.points[mesh.triangles]
     sizes = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1, initial=0.0)
     for _ in range(_ROUNDS):
-        violation = _violations(points, triangles, mesh, sizes, clearance)
+        violation = violations(points, triangles, mesh, sizes, clearance)
         if not violation.any():
             return points, True
         steps = np.zeros(len(points))
@@ -65,14 +66,15 @@ def vertex_directions(points: Points, triangles: Triangles) -> Floats:
     return np.asarray(result / np.maximum(np.linalg.norm(result, axis=1, keepdims=True), 1e-300))
 
 
-def _violations(points: Points, triangles: Triangles, mesh: PolygonMesh, sizes: Floats, clearance: float) -> Floats:
+def violations(points: Points, triangles: Triangles, mesh: PolygonMesh, sizes: Floats, clearance: float) -> Floats:
     """(t,) how far each face of the cage is from enclosing what is in front of it."""
     violation = np.zeros(len(triangles))
     outside = np.flatnonzero(winding_numbers(mesh.points, points, triangles) < 0.5)
-    if len(outside):
-        found = TriangleSearch(points, triangles).query(mesh.points[outside])
+    whole = np.delete(np.arange(len(triangles)), flat_triangles(points, triangles))
+    if len(outside) and len(whole):
+        found = TriangleSearch(points, triangles[whole]).query(mesh.points[outside])
         distance = np.linalg.norm(mesh.points[outside] - found.points, axis=1)
-        np.maximum.at(violation, found.triangles, distance + clearance)
+        np.maximum.at(violation, whole[found.triangles], distance + clearance)
     pairs = crossings(points, triangles, mesh.points, mesh.triangles)
     if len(pairs):
         np.maximum.at(violation, pairs[:, 0], np.clip(0.2 * sizes[pairs[:, 1]], clearance, 4 * clearance))

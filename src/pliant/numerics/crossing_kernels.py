@@ -6,6 +6,8 @@ import numpy as np
 
 from pliant.numerics.compiling import inlined, kernel
 
+_FLAT = 1e-13  # of a cube: tetrahedra below this are flat, and their corners lie in one plane
+
 
 @inlined
 def _volume(a, b, c, d):
@@ -21,7 +23,11 @@ def _pierces(p, q, corners):
     """Whether the segment from p to q meets a triangle in whose plane it does not lie."""
     a, b, c = corners[0], corners[1], corners[2]
     above, below = _volume(a, b, c, p), _volume(a, b, c, q)
-    if above * below > 0.0 or (above == 0.0 and below == 0.0):
+    size = 0.0
+    for i in range(3):
+        size = max(size, abs(b[i] - a[i]), abs(c[i] - a[i]), abs(q[i] - p[i]))
+    flat = _FLAT * size * size * size
+    if above * below > 0.0 or (abs(above) <= flat and abs(below) <= flat):
         return False
     one, two, three = _volume(p, q, a, b), _volume(p, q, b, c), _volume(p, q, c, a)
     return (one >= 0.0 and two >= 0.0 and three >= 0.0) or (one <= 0.0 and two <= 0.0 and three <= 0.0)

@@ -122,9 +122,9 @@ def angle(sine, cosine, zero):
     flat = magnitude(cosine)
     low, high = flat * _TAN_EIGHTH, flat * (1.0 / _TAN_EIGHTH)
     above, below = sine - flat, sine + flat
-    top = where_less(sine, low, sine, where_less(high, sine, zero - flat, above))
-    bottom = where_less(sine, low, flat, where_less(high, sine, sine, below))
-    base = where_less(sine, low, zero, where_less(high, sine, zero + _QUARTER, zero + _EIGHTH))
+    top = where_less(low, sine, where_less(high, sine, zero - flat, above), sine)
+    bottom = where_less(low, sine, where_less(high, sine, sine, below), flat)
+    base = where_less(low, sine, where_less(high, sine, zero + _QUARTER, zero + _EIGHTH), zero)
     u = top / where_less(zero, bottom, bottom, zero + 1.0)
     z = u * u
     c = _ARCTAN

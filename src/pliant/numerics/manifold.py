@@ -12,6 +12,8 @@ from pliant.numerics.ragged import Ragged
 
 Indices = NDArray[np.int64]
 
+_FLAT = 1e-12
+
 
 @dataclass(frozen=True)
 class Faults:
@@ -35,6 +37,14 @@ def manifold_faults(polygons: Ragged, count: int) -> Faults:
     loops = edges[:, 0] == edges[:, 1] if len(edges) else np.zeros(0, bool)
     wrong = (uses > 2) | ((uses == 2) & (forward != 1)) | loops
     return Faults(edges[(uses == 1) & ~loops], edges[wrong], _pinched(polygons, count))
+
+
+def flat_triangles(points: NDArray[np.float64], triangles: NDArray[np.integer]) -> Indices:
+    """(k,) triangles whose area is nothing beside the square of the whole's diagonal."""
+    corners = points[triangles]
+    double = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+    square = float((np.ptp(points, axis=0) ** 2).sum()) if len(points) else 0.0
+    return np.flatnonzero(double <= 2 * _FLAT * square)
 
 
 def pieces(edges: Indices, count: int) -> tuple[int, Indices]:

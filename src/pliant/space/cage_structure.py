@@ -4,15 +4,11 @@ from __future__ import annotations
 
 import weakref
 
-import numpy as np
-
 from pliant.errors import InvalidDeformer
 from pliant.mesh import PolygonMesh
-from pliant.numerics.manifold import manifold_faults
+from pliant.numerics.manifold import flat_triangles, manifold_faults
 from pliant.numerics.triangle_crossings import self_crossings
 from pliant.numerics.winding import signed_volume
-
-_FLAT = 1e-12  # of the squared diagonal: a triangle without area
 
 _sound: weakref.WeakSet[PolygonMesh] = weakref.WeakSet()
 
@@ -30,9 +26,7 @@ def checked_cage(mesh: PolygonMesh) -> None:
     if not len(mesh.faces):
         raise InvalidDeformer("the cage has no faces: it encloses nothing")
     _refuse_holes(mesh)
-    corners = mesh.points[mesh.triangles]
-    areas = np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1) / 2
-    flat = np.flatnonzero(areas <= _FLAT * mesh.diagonal**2)
+    flat = flat_triangles(mesh.points, mesh.triangles)
     if len(flat):
         raise InvalidDeformer(
             f"{len(flat)} triangles of the cage have no area, the first is of face {mesh.triangle_faces[flat[0]]}: "
