@@ -236,11 +236,8 @@ def evaluate_once(grid: CellGrid, points: Floats, lattice: Floats, base: Floats,
     """
     from pliant.numerics.tricubic_sweep import sweep
 
-    x, y, z = lattice.shape[:3]
-    shape = np.array([x, y, z + z % 2], np.int64)
-    twice = _on_cache_lines((2, *shape, 4))
-    twice[0, :, :, :z, :3], twice[1, :, :, : z - 1, :3] = lattice, lattice[:, :, 1:]
-    flat, rows, base, target = source(points.reshape(-1)), twice.reshape(-1), source(base.reshape(-1)), out.reshape(-1)
+    rows, shape = swept(lattice)
+    flat, base, target = source(points.reshape(-1)), source(base.reshape(-1)), out.reshape(-1)
     checks = []
 
     def work(start: int, stop: int) -> None:
@@ -252,6 +249,15 @@ def evaluate_once(grid: CellGrid, points: Floats, lattice: Floats, base: Floats,
 
     for_chunks(work, len(points), min(max(len(points) // 8, 8_192), 131_072))
     return not np.isnan(checks).any()
+
+
+def swept(lattice: Floats) -> tuple[Floats, Integers]:
+    """A lattice (x, y, z, 3) as :mod:`pliant.numerics.tricubic_sweep` takes it, flat, and (3,) its shape there."""
+    x, y, z = lattice.shape[:3]
+    shape = np.array([x, y, z + z % 2], np.int64)
+    twice = _on_cache_lines((2, *shape, 4))
+    twice[0, :, :, :z, :3], twice[1, :, :, : z - 1, :3] = lattice, lattice[:, :, 1:]
+    return twice.reshape(-1), shape
 
 
 def _on_cache_lines(shape: tuple[int, ...]) -> Floats:

@@ -1,6 +1,7 @@
-"""The kernel that inverts x' = A x + t + a tricubic sum: Newton's method, eight points of a cell at a time.
+"""The kernel that inverts x' = A x + t + a tricubic sum: damped Newton's method, eight points side by side.
 
-Points wander from cell to cell, so that they are sorted anew before every step: that costs less than it spares.
+Points wander from cell to cell, so none are sorted: each step sweeps over them as :mod:`pliant.numerics.tricubic_sweep`
+does. What becomes of a point does not depend on those beside it.
 """
 
 from __future__ import annotations
@@ -8,48 +9,59 @@ from __future__ import annotations
 import numpy as np
 
 from pliant.numerics.compiling import inlined, kernel
-from pliant.numerics.lanes import get, load, put, root, spread, store
-from pliant.numerics.tricubic import _corner, _tabulate, _tabulate_slopes
+from pliant.numerics.lane_functions import where_less
+from pliant.numerics.lanes import (
+    get,
+    load,
+    load_triples,
+    put,
+    root,
+    spread,
+    spread_halves,
+    store,
+    store_sum_of_halves,
+    total,
+)
+from pliant.numerics.tricubic import tabulate, tabulate_slopes
+from pliant.numerics.tricubic_sweep import place, plane
 
-HALVINGS = 12  # of a step that does not lower the residual
-
-RECORD = 12  # numbers kept of a point, side by side: its image, then
-BEST, STEP, LEAST, RATIO, HALVED = 3, 6, 9, 10, 11
+HALVINGS = 12.0  # of a step that does not lower the residual
 
 
 @inlined
-def _cube_with_slopes(lattice, at, down_x, down_y, table, sums, to):
-    """The sum over 4 x 4 x 4 control values and its three slopes, stored at ``sums[to]``: 192 multiply-adds."""
+def _sums(lattice, p, down_x, down_y, table, lane, sums):
+    """The sum at one point and its slopes along the three axes of the grid: four triples, 32 numbers apart."""
+    y0, y1, y2, y3 = get(table, 64 + lane), get(table, 72 + lane), get(table, 80 + lane), get(table, 88 + lane)
+    s0, s1, s2, s3 = get(table, 96 + lane), get(table, 104 + lane), get(table, 112 + lane), get(table, 120 + lane)
     value, along_x, along_y, along_z = spread(0.0), spread(0.0), spread(0.0), spread(0.0)
-    for i in range(4):
-        plane, plane_y, plane_z = spread(0.0), spread(0.0), spread(0.0)
-        for j in range(4):
-            row, slope = spread(0.0), spread(0.0)
-            for k in range(4):
-                control = get(lattice, at + i * down_x + j * down_y + 3 * k)
-                row = row + load(table, 128 + 8 * k) * control
-                slope = slope + load(table, 160 + 8 * k) * control
-            plane = plane + load(table, 64 + 8 * j) * row
-            plane_y = plane_y + load(table, 96 + 8 * j) * row
-            plane_z = plane_z + load(table, 64 + 8 * j) * slope
-        value = value + load(table, 8 * i) * plane
-        along_x = along_x + load(table, 32 + 8 * i) * plane
-        along_y = along_y + load(table, 8 * i) * plane_y
-        along_z = along_z + load(table, 8 * i) * plane_z
-    store(sums, to, value)
-    store(sums, to + 8, along_x)
-    store(sums, to + 16, along_y)
-    store(sums, to + 24, along_z)
+    for half in range(2):
+        rows, rows_x, rows_y = spread(0.0), spread(0.0), spread(0.0)
+        for i in range(4):
+            at = p + i * down_x + 8 * half
+            weight, slope = get(table, 8 * i + lane), get(table, 32 + 8 * i + lane)
+            summed = plane(lattice, at, down_y, y0, y1, y2, y3)
+            rows = rows + summed * weight
+            rows_x = rows_x + summed * slope
+            rows_y = rows_y + plane(lattice, at, down_y, s0, s1, s2, s3) * weight
+        z = 128 + 16 * half + lane
+        weights = spread_halves(get(table, z), get(table, z + 8))
+        value, along_x, along_y = value + rows * weights, along_x + rows_x * weights, along_y + rows_y * weights
+        along_z = along_z + rows * spread_halves(get(table, z + 32), get(table, z + 40))
+    store_sum_of_halves(sums, 3 * lane, value)
+    store_sum_of_halves(sums, 32 + 3 * lane, along_x)
+    store_sum_of_halves(sums, 64 + 3 * lane, along_y)
+    store_sum_of_halves(sums, 96 + 3 * lane, along_z)
 
 
 @inlined
-def _row(sums, c, affine, frame):
-    """Row c of the Jacobians of eight points, from the slopes in grid coordinates."""
-    u, v, w = load(sums, 32 * c + 8), load(sums, 32 * c + 16), load(sums, 32 * c + 24)
+def _column(sums, frame, affine, axis):
+    """The derivative of the map along one axis of space."""
+    u, v, w = load_triples(sums, 32), load_triples(sums, 64), load_triples(sums, 96)
+    f0, f1, f2 = frame[0, axis], frame[1, axis], frame[2, axis]
     return (
-        u * frame[0, 0] + v * frame[1, 0] + w * frame[2, 0] + spread(affine[c, 0]),
-        u * frame[0, 1] + v * frame[1, 1] + w * frame[2, 1] + spread(affine[c, 1]),
-        u * frame[0, 2] + v * frame[1, 2] + w * frame[2, 2] + spread(affine[c, 2]),
+        u[0] * f0 + v[0] * f1 + w[0] * f2 + spread(affine[0, axis]),
+        u[1] * f0 + v[1] * f1 + w[1] * f2 + spread(affine[1, axis]),
+        u[2] * f0 + v[2] * f1 + w[2] * f2 + spread(affine[2, axis]),
     )
 
 
@@ -59,108 +71,119 @@ def _cross(a, b):
 
 
 @inlined
-def _equations(here, at, length, sums, affine, frame, found):
-    """Newton's equations of eight points by Cramer's rule, stored in ``found``.
+def _dot(a, b):
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 
-    Eight of each: the adjugate times the residual (3), det J, the sum of J's squares, the residual's length, and the
-    residual (3).
+
+@inlined
+def _newton(sums, frame, affine, residual):
+    """Newton's step by Cramer's rule, and det J; where J is singular the residual itself."""
+    first, second, third = (
+        _column(sums, frame, affine, 0),
+        _column(sums, frame, affine, 1),
+        _column(sums, frame, affine, 2),
+    )
+    across = _cross(second, third)
+    ratio = _dot(first, across)
+    square = _dot(first, first) + _dot(second, second) + _dot(third, third)
+    singular = 1e-28 * square * square * square
+    one, zero = spread(1.0), spread(0.0)
+    regular = where_less(singular, ratio * ratio, one, zero)
+    factor = one / where_less(zero, regular, ratio, one)
+    turned = _cross(residual, third), _cross(second, residual)
+    steps = _dot(residual, across), _dot(first, turned[0]), _dot(first, turned[1])
+    return (
+        where_less(zero, regular, steps[0] * factor, residual[0]),
+        where_less(zero, regular, steps[1] * factor, residual[1]),
+        where_less(zero, regular, steps[2] * factor, residual[2]),
+        ratio,
+    )
+
+
+@inlined
+def _residual(image, trial, sums, affine):
+    """What the map of the trial lacks of the image."""
+    x, y, z = trial
+    moved = load_triples(sums, 0)
+    return (
+        image[0] - (x * affine[0, 0] + y * affine[0, 1] + z * affine[0, 2] + affine[0, 3] + moved[0]),
+        image[1] - (x * affine[1, 0] + y * affine[1, 1] + z * affine[1, 2] + affine[1, 3] + moved[1]),
+        image[2] - (x * affine[2, 0] + y * affine[2, 1] + z * affine[2, 2] + affine[2, 3] + moved[2]),
+    )
+
+
+@inlined
+def _judge(trial, step, size, ratio, state):
+    """Keep trials that lower the residual, with the step from there; elsewhere go half as far from the best.
+
+    ``state`` holds eight of each: the best place (3), the step from there (3), the residual's square, det J, halvings.
     """
-    x, y, z = load(here, at), load(here, length + at), load(here, 2 * length + at)
-    square, size = spread(0.0), spread(0.0)
+    least = load(state, 48)
     for c in range(3):
-        image = x * affine[c, 0] + y * affine[c, 1] + z * affine[c, 2] + spread(affine[c, 3])
-        residual = load(here, (3 + c) * length + at) - (image + load(sums, 32 * c))
-        size = size + residual * residual
-        store(found, 48 + 8 * c, residual)
-        row = _row(sums, c, affine, frame)
-        square = square + row[0] * row[0] + row[1] * row[1] + row[2] * row[2]
-    first, second, third = _row(sums, 0, affine, frame), _row(sums, 1, affine, frame), _row(sums, 2, affine, frame)
-    a, b, c = _cross(second, third), _cross(third, first), _cross(first, second)
-    r0, r1, r2 = load(found, 48), load(found, 56), load(found, 64)
-    store(found, 0, a[0] * r0 + b[0] * r1 + c[0] * r2)
-    store(found, 8, a[1] * r0 + b[1] * r1 + c[1] * r2)
-    store(found, 16, a[2] * r0 + b[2] * r1 + c[2] * r2)
-    store(found, 24, first[0] * a[0] + first[1] * a[1] + first[2] * a[2])
-    store(found, 32, square)
-    store(found, 40, root(size))
-
-
-@inlined
-def _judge(here, at, length, found, lane, state, record):
-    """Keep a trial that lowers the residual, with the step from there; go half as far from the best one otherwise."""
-    size, whole, square = get(found, 40 + lane), get(found, 24 + lane), get(found, 32 + lane)
-    if size < get(state, record + LEAST):
-        regular = whole * whole > 1e-28 * square * square * square
-        factor = 1.0 / whole if regular else 1.0
-        for c in range(3):
-            put(state, record + BEST + c, get(here, c * length + at))
-            put(state, record + STEP + c, factor * get(found, (0 if regular else 48) + 8 * c + lane))
-        put(state, record + LEAST, size)
-        put(state, record + RATIO, whole)
-        put(state, record + HALVED, 0.0)
-    else:
-        for c in range(3):
-            put(state, record + STEP + c, 0.5 * get(state, record + STEP + c))
-        put(state, record + HALVED, get(state, record + HALVED) + 1.0)
-
-
-@inlined
-def _keep_unsolved(count, accepted, active, trial, state):
-    """Write the active points that go on, and their next trials, to the front; their number."""
-    left = 0
-    for place in range(count):
-        point = get(active, place)
-        record = RECORD * point
-        if get(state, record + LEAST) <= accepted or get(state, record + HALVED) > HALVINGS:
-            continue
-        active[left] = point
-        for c in range(3):
-            put(trial, 3 * left + c, get(state, record + BEST + c) + get(state, record + STEP + c))
-        left += 1
-    return left
+        store(state, 8 * c, where_less(size, least, trial[c], load(state, 8 * c)))
+        store(state, 24 + 8 * c, where_less(size, least, step[c], load(state, 24 + 8 * c) * 0.5))
+    store(state, 56, where_less(size, least, ratio, load(state, 56)))
+    store(state, 64, where_less(size, least, spread(0.0), load(state, 64) + 1.0))
+    store(state, 48, where_less(size, least, size, least))
 
 
 @kernel
-def advance(
-    starts, order, local, frame, grid, stride, basis, lattice, shape, affine, accepted, active, trial, state
+def invert(
+    images, first, stop, start, frame, limits, keep, grid, stride, basis, lattice, shape, affine, accepted, iterations,
+    out, error, ratios,
 ):  # fmt: skip
-    """One step of Newton's method for a chunk's active points; the number of those that are still active.
+    """The pre-images of points ``first`` to ``stop``, the lengths of what is left of the residuals, and det J there.
 
     Parameters
     ----------
-    starts, order, local, frame, grid, stride, basis, lattice, shape
-        The trial points, sorted by cell, and the sum: see :mod:`pliant.numerics.tricubic`.
+    start
+        (3 n,) where to begin.
+    frame, limits, keep, grid, stride, basis, lattice, shape
+        The sum: see :func:`pliant.numerics.tricubic_sweep.sweep`.
     affine
         (3, 4) A and t.
     accepted
         The residual that counts as solved.
-    active, trial
-        (k,) numbers of the active points in the chunk, and where to try next, flat; overwritten.
-    state
-        A record of each point of the chunk, flat: its image (3), the best place so far (3), the step from there (3),
-        the residual's length and det J there, and how often the step was halved.
     """
-    length, cells, count = len(local) // 3, len(starts) - 2, starts[-1]
-    table, sums, here, found = np.empty(192), np.zeros(96), np.empty(6 * length), np.empty(72)
-    down_x, down_y = shape[1] * shape[2] * 3, shape[2] * 3
-    for at in range(count):  # trial points and images, sorted as the cells' points
-        place = get(order, at)
-        record = RECORD * get(active, place)
-        for c in range(3):
-            put(here, c * length + at, get(trial, 3 * place + c))
-            put(here, (3 + c) * length + at, get(state, record + c))
-    for cell in range(cells + 1):
-        if cell == cells:  # where nothing moves but by A and t
-            sums[:] = 0.0
-        for at in range(starts[cell], starts[cell + 1], 8):
-            if cell < cells:
-                for axis in range(3):
-                    _tabulate(table, 64 * axis, basis, load(local, axis * length + at))
-                    _tabulate_slopes(table, 64 * axis + 32, basis, load(local, axis * length + at))
-                corner = _corner(cell, grid, stride, shape)
-                for c in range(3):
-                    _cube_with_slopes(lattice, corner + c, down_x, down_y, table, sums, 32 * c)
-            _equations(here, at, length, sums, affine, frame, found)
-            for i in range(min(8, starts[cell + 1] - at)):
-                _judge(here, at + i, length, found, i, state, RECORD * get(active, get(order, at + i)))
-    return _keep_unsolved(count, accepted, active, trial, state)
+    table, local, corner, sums = np.empty(192), np.empty(24), np.empty(8), np.zeros(128)
+    state, block, begin = np.empty(72), np.zeros(24), np.zeros(24)
+    down_x, down_y = shape[1] * shape[2] * 4, shape[2] * 4
+    zero = spread(0.0)
+    for n in range(first, stop, 8):
+        count = min(8, stop - n)
+        for i in range(24):  # lanes beyond the last point do its work again
+            at = 3 * n + min(i, 3 * (count - 1) + i % 3)
+            put(block, i, get(images, at))
+            put(begin, i, get(start, at))
+        image, trial = load_triples(block, 0), load_triples(begin, 0)
+        state[24:48], state[48:56], state[56:] = 0.0, np.inf, 0.0
+        store(state, 0, trial[0])
+        store(state, 8, trial[1])
+        store(state, 16, trial[2])
+        for _ in range(iterations + 1):
+            inside = place(trial[0], trial[1], trial[2], frame, limits, keep, grid, stride, shape, local, corner)
+            for axis in range(3):
+                tabulate(table, 64 * axis, basis, load(local, 8 * axis))
+                tabulate_slopes(table, 64 * axis + 32, basis, load(local, 8 * axis))
+            for b in range(0, 64, 8):
+                store(table, b, load(table, b) * inside)
+            for lane in range(8):
+                _sums(lattice, int(get(corner, lane)), down_x, down_y, table, lane, sums)
+            residual = _residual(image, trial, sums, affine)
+            newton = _newton(sums, frame, affine, residual)
+            _judge(trial, (newton[0], newton[1], newton[2]), _dot(residual, residual), newton[3], state)
+            going = where_less(zero + accepted * accepted, load(state, 48), spread(1.0), zero)
+            going = where_less(zero + HALVINGS, load(state, 64), zero, going)
+            if total(going) == 0.0:
+                break
+            trial = (
+                load(state, 0) + load(state, 24) * going,
+                load(state, 8) + load(state, 32) * going,
+                load(state, 16) + load(state, 40) * going,
+            )
+        store(state, 48, root(load(state, 48)))
+        for i in range(count):
+            for c in range(3):
+                put(out, 3 * (n + i) + c, get(state, 8 * c + i))
+            put(error, n + i, get(state, 48 + i))
+            put(ratios, n + i, get(state, 56 + i))

@@ -85,14 +85,15 @@ def locate(points, first, stop, frame, limits, keep, grid, order, local, starts)
 
 
 @inlined
-def _tabulate(table, at, basis, t):
+def tabulate(table, at, basis, t):
     """The four basis functions of eight parameters, from ``table[at]`` on."""
     for b in range(4):
         store(table, at + 8 * b, ((t * basis[3, b] + basis[2, b]) * t + basis[1, b]) * t + basis[0, b])
 
 
 @inlined
-def _tabulate_slopes(table, at, basis, t):
+def tabulate_slopes(table, at, basis, t):
+    """The derivatives of the four basis functions, likewise."""
     for b in range(4):
         store(table, at + 8 * b, (t * (3.0 * basis[3, b]) + 2.0 * basis[2, b]) * t + basis[1, b])
 
@@ -160,8 +161,8 @@ def evaluate(first, starts, order, local, grid, stride, basis, powers, shape, ch
         corner = ((rest // grid[1] * shape[1] + rest % grid[1]) * stride * grid[2] + k) * 12
         stop = first + starts[cell + 1]
         for at in range(first + starts[cell], stop, 8):
-            _tabulate(table, 0, basis, load(local, at))
-            _tabulate(table, 32, basis, load(local, length + at))
+            tabulate(table, 0, basis, load(local, at))
+            tabulate(table, 32, basis, load(local, length + at))
             x, y, z = _cubes(powers, corner, down_x, down_y, table, load(local, 2 * length + at))
             store(piece, 0, x)
             store(piece, 8, y)
@@ -195,8 +196,8 @@ def differentiate(first, starts, order, local, frame, grid, stride, basis, latti
         corner, stop = _corner(cell, grid, stride, shape), first + starts[cell + 1]
         for at in range(first + starts[cell], stop, 8):
             for axis in range(3):
-                _tabulate(table, 64 * axis, basis, load(local, axis * length + at))
-                _tabulate_slopes(table, 64 * axis + 32, basis, load(local, axis * length + at))
+                tabulate(table, 64 * axis, basis, load(local, axis * length + at))
+                tabulate_slopes(table, 64 * axis + 32, basis, load(local, axis * length + at))
             for entry in range(9):
                 store(scratch, 8 * entry, spread(linear[entry // 3, entry % 3]))
             for axis in range(3):
@@ -234,7 +235,7 @@ def gather(first, starts, order, local, grid, stride, basis, shape, values, latt
                     put(here, 3 * i + c, get(values, 3 * get(order, at + i) + c))
             value = load_triples(here, 0)
             for axis in range(3):
-                _tabulate(table, 32 * axis, basis, load(local, axis * length + at))
+                tabulate(table, 32 * axis, basis, load(local, axis * length + at))
             for ij in range(16):
                 share = load(table, 8 * (ij // 4)) * load(table, 32 + 8 * (ij % 4))
                 for k in range(4):
