@@ -118,11 +118,12 @@ def _cluster(address: str | None) -> Iterator[Any]:
     from pliant.errors import InvalidParameter, MissingExtra
 
     try:
-        from distributed import Client
+        import distributed
     except ImportError:
         raise MissingExtra("a cluster", "dask") from None
     try:
-        client = Client(address, timeout="10s", set_as_default=False)
+        connect: Any = distributed.Client
+        client = connect(address, timeout="10s", set_as_default=False)
     except (OSError, ValueError) as error:
         raise InvalidParameter(f"there is no scheduler at {address}: {error} (start one by: dask scheduler)") from error
     with client:
