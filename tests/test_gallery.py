@@ -18,6 +18,10 @@ NUMBERS = {
     "bezier_ffd": (0.8, 0.2),  # the least volume ratio of the vase's dance: nothing folds
     "bezier_patch": (0.0, 1e-12),  # studs keep their height
     "bspline_ffd": (0.0, 1e-8),  # the inverse brings every point back
+    "cage_build": (0.0, 1e-12),  # at rest the figure stays where it is
+    "cage_builder": (2.0, 0.0),  # one piece without a handle
+    "cage_coordinates": (0.5016, 0.02),  # half of the shear is gone
+    "cage_influence": (0.0, 1e-12),  # nothing is negative
     "clamped_ffd": (0.059475, 1e-5),
     "compose": (0.0, 0.0),  # with the twist at rest the bend is left, exactly
     "contour_skeleton": (6.0, 0.0),  # muzzle, tail and four hooves

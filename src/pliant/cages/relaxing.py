@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from pliant.cages.checking import check_cage
 from pliant.cages.pushing import push_out, vertex_directions, violations
 from pliant.mesh import Points, PolygonMesh
-from pliant.numerics.triangle_crossings import self_crossings
 
 _PULL = 0.35  # of the way to the neighbours' mean
 _TRIES = 6  # rounds in which vertices that went too far go back
@@ -16,7 +16,7 @@ _TRIES = 6  # rounds in which vertices that went too far go back
 def relaxed(cage: PolygonMesh, mesh: PolygonMesh, rounds: int, clearance: float) -> PolygonMesh:
     """Let vertices go towards their neighbours' mean, outwards where the mesh is met, and inwards where there is room.
 
-    A round that makes the cage cut itself is taken back.
+    A round after which the cage fails its check is taken back, and the last one.
 
     Parameters
     ----------
@@ -33,9 +33,9 @@ def relaxed(cage: PolygonMesh, mesh: PolygonMesh, rounds: int, clearance: float)
         np.add.at(means, cage.edges[:, 0], points[cage.edges[:, 1]])
         np.add.at(means, cage.edges[:, 1], points[cage.edges[:, 0]])
         means /= np.maximum(np.bincount(cage.edges.reshape(-1), minlength=len(points)), 1)[:, None]
-        points, enclosed = push_out(points + _PULL * (means - points), triangles, mesh, clearance)
+        points, _ = push_out(points + _PULL * (means - points), triangles, mesh, clearance)
         points = _tightened(points, triangles, mesh, clearance)
-        if not enclosed or len(self_crossings(points, triangles)):
+        if not check_cage(cage.with_points(points), mesh).ok:
             break
         best = points
     return cage.with_points(best)
