@@ -1,4 +1,5 @@
 from . import batch as batch
+from . import shapes as shapes
 from . import studio as studio
 from .batch.outcome import Outcome as Outcome
 from .batch.running import run_batch as run_batch
@@ -57,6 +58,8 @@ from .io.transforms import write_transform as write_transform
 from .mesh import PolygonMesh as PolygonMesh
 from .rendering.pictures import render as render
 from .scene.animation.formats import read_sequence as read_sequence
+from .scene.baking import bake as bake
+from .scene.baking import bake_shape_keys as bake_shape_keys
 from .scene.clip import Clip as Clip
 from .scene.layer import Layer as Layer
 from .scene.project import load_project as load_project
@@ -124,6 +127,7 @@ from .surface.arap import ARAP as ARAP
 from .surface.contour_skeletons import ContourSkeleton as ContourSkeleton
 from .surface.contour_skeletons import contour_skeleton as contour_skeleton
 from .surface.laplacian_edit import LaplacianEdit as LaplacianEdit
+from .surface.shape_keys import ShapeKeys as ShapeKeys
 from .surface.skeleton_edit import SkeletonEdit as SkeletonEdit
 from .surface.smoothing import smooth as smooth
 from .surface.transfer import DeformationTransfer as DeformationTransfer
