@@ -130,8 +130,9 @@ def arap_comparisons(along: int, around: int) -> list[Comparison]:
 
     return [
         Comparison(
-            f"ARAP, {count}: one iteration",
+            f"ARAP, {count}: one iteration, ten in a row",
             {"pliant": iteration, "libigl, spokes": lambda: igl.arap_solve(values, data, points)},
+            repeat=10,
         ),
         Comparison(f"ARAP, {count}: to 1e-3", {"pliant": lambda: bound.solve(goal), "libigl, spokes": peer}, rounds=2),
     ]

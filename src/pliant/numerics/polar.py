@@ -1,4 +1,4 @@
-"""The kernel for nearest rotations: the largest root of a quartic, and its derivative.
+"""The kernel for nearest rotations, eight at a time: the largest root of a quartic, and its derivative.
 
 The largest value λ of tr(R^T S) over rotations R is the largest root of
 
@@ -17,6 +17,8 @@ import math
 import numpy as np
 
 from pliant.numerics.compiling import inlined, kernel
+from pliant.numerics.lane_functions import magnitude, where_less
+from pliant.numerics.lanes import get, load, put, root, spread, store, total
 
 
 @inlined
@@ -51,8 +53,8 @@ def _largest_by_jacobi(matrix, vectors):
 
 
 @inlined
-def _by_quaternion(s, r, horn, vectors):
-    """r (9,) = a rotation that maximises tr(R^T S), from the eigenvector of Horn's matrix."""
+def _by_quaternion(s, r, lane, horn, vectors):
+    """A rotation that maximises tr(R^T S), s (9,), from the eigenvector of Horn's matrix, into one lane of r (72,)."""
     for i in range(3):
         j, k = (i + 1) % 3, (i + 2) % 3
         horn[0, i + 1] = horn[i + 1, 0] = s[3 * k + j] - s[3 * j + k]
@@ -61,24 +63,34 @@ def _by_quaternion(s, r, horn, vectors):
     horn[0, 0] = s[0] + s[4] + s[8]
     best = _largest_by_jacobi(horn, vectors)
     w, x, y, z = vectors[0, best], vectors[1, best], vectors[2, best], vectors[3, best]
-    r[0], r[1], r[2] = w * w + x * x - y * y - z * z, 2.0 * (x * y - w * z), 2.0 * (x * z + w * y)
-    r[3], r[4], r[5] = 2.0 * (x * y + w * z), w * w - x * x + y * y - z * z, 2.0 * (y * z - w * x)
-    r[6], r[7], r[8] = 2.0 * (x * z - w * y), 2.0 * (y * z + w * x), w * w - x * x - y * y + z * z
+    put(r, lane, w * w + x * x - y * y - z * z)
+    put(r, 8 + lane, 2.0 * (x * y - w * z))
+    put(r, 16 + lane, 2.0 * (x * z + w * y))
+    put(r, 24 + lane, 2.0 * (x * y + w * z))
+    put(r, 32 + lane, w * w - x * x + y * y - z * z)
+    put(r, 40 + lane, 2.0 * (y * z - w * x))
+    put(r, 48 + lane, 2.0 * (x * z - w * y))
+    put(r, 56 + lane, 2.0 * (y * z + w * x))
+    put(r, 64 + lane, w * w - x * x - y * y + z * z)
 
 
 @inlined
-def nearest_rotation(s, r, horn, vectors):
-    """r (9,) = the rotation that maximises tr(R^T S); s (9,) is scaled, (4, 4) ``horn`` and ``vectors`` are scratch."""
-    size = 0.0
+def nearest_rotations(s, r, count, one, horn, vectors):
+    """r (72,) = the rotations that maximise tr(R^T S) for the first ``count`` of eight matrices s (72,).
+
+    Both hold eight of each entry, row by row. ``one`` (9,), (4, 4) ``horn`` and ``vectors`` are scratch; s is scaled.
+    """
+    zero, unit = spread(0.0), spread(1.0)
+    size = zero
     for k in range(9):
-        size = max(size, abs(s[k]))
-    if not size > 1e-280:
-        for k in range(9):
-            r[k] = 1.0 if k % 4 == 0 else 0.0
-        return
+        entry = magnitude(load(s, 8 * k))
+        size = where_less(size, entry, entry, size)
+    scale = unit / where_less(zero + 1e-280, size, size, unit)
     for k in range(9):
-        s[k] /= size
-    a, b, c, d, e, f, g, h, i = s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7], s[8]
+        store(s, 8 * k, load(s, 8 * k) * scale)
+    a, b, c = load(s, 0), load(s, 8), load(s, 16)
+    d, e, f = load(s, 24), load(s, 32), load(s, 40)
+    g, h, i = load(s, 48), load(s, 56), load(s, 64)
     c00, c01, c02 = e * i - f * h, f * g - d * i, d * h - e * g
     c10, c11, c12 = c * h - b * i, a * i - c * g, b * g - a * h
     c20, c21, c22 = b * f - c * e, c * d - a * f, a * e - b * d
@@ -87,53 +99,76 @@ def nearest_rotation(s, r, horn, vectors):
     ab, ac, bc = a * b + d * e + g * h, a * c + d * f + g * i, b * c + e * f + h * i
     square = aa + bb + cc
     last = 2.0 * (aa * aa + bb * bb + cc * cc + 2.0 * (ab * ab + ac * ac + bc * bc)) - square * square
-    root = math.sqrt(3.0 * square)
-    slope = 0.0
+    top = root(3.0 * square)
+    slope = zero
     for _ in range(60):
-        slope = 4.0 * ((root * root - square) * root - 2.0 * det)
-        value = ((root * root - 2.0 * square) * root - 8.0 * det) * root + last
-        if slope <= 0.0 or value <= 1e-15 * slope * root:
+        slope = 4.0 * ((top * top - square) * top - 2.0 * det)
+        value = ((top * top - 2.0 * square) * top - 8.0 * det) * top + last
+        going = where_less(1e-15 * slope * top, value, where_less(zero, slope, unit, zero), zero)
+        if total(going) == 0.0:
             break
-        root -= value / slope
-    if not slope > 4e-4 * root * root * root:
-        _by_quaternion(s, r, horn, vectors)
-        return
-    scale, twice = 4.0 / slope, 2.0 * root
-    p = root * root + square
-    r[0] = scale * (p * a + twice * c00 - 2.0 * (a * aa + b * ab + c * ac))
-    r[1] = scale * (p * b + twice * c01 - 2.0 * (a * ab + b * bb + c * bc))
-    r[2] = scale * (p * c + twice * c02 - 2.0 * (a * ac + b * bc + c * cc))
-    r[3] = scale * (p * d + twice * c10 - 2.0 * (d * aa + e * ab + f * ac))
-    r[4] = scale * (p * e + twice * c11 - 2.0 * (d * ab + e * bb + f * bc))
-    r[5] = scale * (p * f + twice * c12 - 2.0 * (d * ac + e * bc + f * cc))
-    r[6] = scale * (p * g + twice * c20 - 2.0 * (g * aa + h * ab + i * ac))
-    r[7] = scale * (p * h + twice * c21 - 2.0 * (g * ab + h * bb + i * bc))
-    r[8] = scale * (p * i + twice * c22 - 2.0 * (g * ac + h * bc + i * cc))
-    _orthonormalize(r)
+        top = top - going * value / where_less(zero, slope, slope, unit)
+    simple = where_less(4e-4 * top * top * top, slope, unit, zero)
+    factor, twice = 4.0 * unit / where_less(zero, simple, slope, unit), 2.0 * top
+    p = top * top + square
+    _orthonormalize(
+        r,
+        factor * (p * a + twice * c00 - 2.0 * (a * aa + b * ab + c * ac)),
+        factor * (p * b + twice * c01 - 2.0 * (a * ab + b * bb + c * bc)),
+        factor * (p * c + twice * c02 - 2.0 * (a * ac + b * bc + c * cc)),
+        factor * (p * d + twice * c10 - 2.0 * (d * aa + e * ab + f * ac)),
+        factor * (p * e + twice * c11 - 2.0 * (d * ab + e * bb + f * bc)),
+        factor * (p * f + twice * c12 - 2.0 * (d * ac + e * bc + f * cc)),
+        factor * (p * g + twice * c20 - 2.0 * (g * aa + h * ab + i * ac)),
+        factor * (p * h + twice * c21 - 2.0 * (g * ab + h * bb + i * bc)),
+        factor * (p * i + twice * c22 - 2.0 * (g * ac + h * bc + i * cc)),
+    )
+    if total(simple) < 8.0:
+        store(vectors.reshape(-1), 0, simple)
+        doubtful = vectors.reshape(-1)[:8].copy()
+        for lane in range(count):
+            if doubtful[lane] == 0.0:
+                _settle_doubt(s, r, lane, one, horn, vectors)
 
 
 @inlined
-def _orthonormalize(r):
-    """One Newton-Schulz step, R (3 - R^T R) / 2: squares what is missing to a rotation."""
-    a, b, c, d, e, f, g, h, i = r[0], r[1], r[2], r[3], r[4], r[5], r[6], r[7], r[8]
+def _settle_doubt(s, r, lane, one, horn, vectors):
+    """One of eight rotations where the root is double, or all is zero: that stays as it is."""
+    nothing = True
+    for k in range(9):
+        one[k] = get(s, 8 * k + lane)
+        nothing = nothing and abs(one[k]) <= 1e-280
+    for k in range(9):
+        put(r, 8 * k + lane, 1.0 if k % 4 == 0 else 0.0)
+    if not nothing:
+        _by_quaternion(one, r, lane, horn, vectors)
+
+
+@inlined
+def _orthonormalize(r, a, b, c, d, e, f, g, h, i):
+    """One Newton-Schulz step, R (3 - R^T R) / 2, stored: squares what is missing to a rotation."""
     aa, bb, cc = (
         1.5 - 0.5 * (a * a + d * d + g * g),
         1.5 - 0.5 * (b * b + e * e + h * h),
         1.5 - 0.5 * (c * c + f * f + i * i),
     )
     ab, ac, bc = -0.5 * (a * b + d * e + g * h), -0.5 * (a * c + d * f + g * i), -0.5 * (b * c + e * f + h * i)
-    r[0], r[1], r[2] = a * aa + b * ab + c * ac, a * ab + b * bb + c * bc, a * ac + b * bc + c * cc
-    r[3], r[4], r[5] = d * aa + e * ab + f * ac, d * ab + e * bb + f * bc, d * ac + e * bc + f * cc
-    r[6], r[7], r[8] = g * aa + h * ab + i * ac, g * ab + h * bb + i * bc, g * ac + h * bc + i * cc
+    for row, (x, y, z) in enumerate(((a, b, c), (d, e, f), (g, h, i))):
+        store(r, 24 * row, x * aa + y * ab + z * ac)
+        store(r, 24 * row + 8, x * ab + y * bb + z * bc)
+        store(r, 24 * row + 16, x * ac + y * bc + z * cc)
 
 
 @kernel
 def rotate_all(matrices, start, stop, out):
     """out (9 n,) = the nearest rotation of each of the matrices [start, stop) of (9 n,)."""
-    s, r, horn, vectors = np.empty(9), np.empty(9), np.empty((4, 4)), np.empty((4, 4))
-    for at in range(start, stop):
-        for k in range(9):
-            s[k] = matrices[9 * at + k]
-        nearest_rotation(s, r, horn, vectors)
-        for k in range(9):
-            out[9 * at + k] = r[k]
+    s, r, one, horn, vectors = np.zeros(72), np.empty(72), np.empty(9), np.empty((4, 4)), np.empty((4, 4))
+    for first in range(start, stop, 8):
+        count = min(8, stop - first)
+        for lane in range(count):
+            for k in range(9):
+                put(s, 8 * k + lane, get(matrices, 9 * (first + lane) + k))
+        nearest_rotations(s, r, count, one, horn, vectors)
+        for lane in range(count):
+            for k in range(9):
+                put(out, 9 * (first + lane) + k, get(r, 8 * k + lane))

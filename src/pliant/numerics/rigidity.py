@@ -18,21 +18,41 @@ import numpy as np
 
 from pliant.numerics.compiling import inlined, kernel
 from pliant.numerics.lanes import get, put
-from pliant.numerics.polar import nearest_rotation
+from pliant.numerics.polar import nearest_rotations
 
 
 @inlined
-def _misfit(starts, around, weights, edges, points, cell, p, r):
+def _misfit(starts, around, weights, edges, points, cell, p, rotations):
     """Σ w |e' - R e|² of one cell, its centre being at 3 p."""
-    energy = 0.0
+    m, energy = 9 * cell, 0.0
+    a, b, c = get(rotations, m), get(rotations, m + 1), get(rotations, m + 2)
+    d, e, f = get(rotations, m + 3), get(rotations, m + 4), get(rotations, m + 5)
+    g, h, i = get(rotations, m + 6), get(rotations, m + 7), get(rotations, m + 8)
+    px, py, pz = get(points, p), get(points, p + 1), get(points, p + 2)
+    for k in range(get(starts, cell), get(starts, cell + 1)):
+        q = 3 * get(around, k)
+        x, y, z = get(edges, 3 * k), get(edges, 3 * k + 1), get(edges, 3 * k + 2)
+        u = px - get(points, q) - (a * x + b * y + c * z)
+        v = py - get(points, q + 1) - (d * x + e * y + f * z)
+        t = pz - get(points, q + 2) - (g * x + h * y + i * z)
+        energy += get(weights, k) * (u * u + v * v + t * t)
+    return energy
+
+
+@inlined
+def _covariance(starts, around, weights, edges, points, cell, p, s, lane):
+    """Σ w e' eᵀ of one cell, its centre being at 3 p, into one lane of s (72,)."""
+    px, py, pz = get(points, p), get(points, p + 1), get(points, p + 2)
+    a = b = c = d = e = f = g = h = i = 0.0
     for k in range(get(starts, cell), get(starts, cell + 1)):
         q, w = 3 * get(around, k), get(weights, k)
         x, y, z = get(edges, 3 * k), get(edges, 3 * k + 1), get(edges, 3 * k + 2)
-        u = get(points, p) - get(points, q) - (get(r, 0) * x + get(r, 1) * y + get(r, 2) * z)
-        v = get(points, p + 1) - get(points, q + 1) - (get(r, 3) * x + get(r, 4) * y + get(r, 5) * z)
-        t = get(points, p + 2) - get(points, q + 2) - (get(r, 6) * x + get(r, 7) * y + get(r, 8) * z)
-        energy += w * (u * u + v * v + t * t)
-    return energy
+        u, v, t = w * (px - get(points, q)), w * (py - get(points, q + 1)), w * (pz - get(points, q + 2))
+        a, b, c = a + u * x, b + u * y, c + u * z
+        d, e, f = d + v * x, e + v * y, f + v * z
+        g, h, i = g + t * x, h + t * y, i + t * z
+    for k, entry in enumerate((a, b, c, d, e, f, g, h, i)):
+        put(s, 8 * k + lane, entry)
 
 
 @kernel
@@ -42,30 +62,26 @@ def turn(first, stop, starts, around, cell_of, centers, weights, edges, points, 
     With ``bending`` > 0 a cell also follows its neighbours' rotations; the cells must then be turned in one piece,
     one after another: so the energy decreases.
     """
-    s, r, horn, vectors = np.empty(9), np.empty(9), np.empty((4, 4)), np.empty((4, 4))
+    s, r, one, horn, vectors = np.zeros(72), np.empty(72), np.empty(9), np.empty((4, 4)), np.empty((4, 4))
+    together = 1 if bending > 0.0 else 8
     energy = 0.0
-    for cell in range(first, stop):
-        p = 3 * get(centers, cell)
-        px, py, pz = get(points, p), get(points, p + 1), get(points, p + 2)
-        a = b = c = d = e = f = g = h = i = 0.0
-        for k in range(get(starts, cell), get(starts, cell + 1)):
-            q, w = 3 * get(around, k), get(weights, k)
-            x, y, z = get(edges, 3 * k), get(edges, 3 * k + 1), get(edges, 3 * k + 2)
-            u, v, t = w * (px - get(points, q)), w * (py - get(points, q + 1)), w * (pz - get(points, q + 2))
-            a, b, c = a + u * x, b + u * y, c + u * z
-            d, e, f = d + v * x, e + v * y, f + v * z
-            g, h, i = g + t * x, h + t * y, i + t * z
-        s[0], s[1], s[2], s[3], s[4], s[5], s[6], s[7], s[8] = a, b, c, d, e, f, g, h, i
+    for block in range(first, stop, together):
+        count = min(together, stop - block)
+        for lane in range(count):
+            cell = block + lane
+            _covariance(starts, around, weights, edges, points, cell, 3 * get(centers, cell), s, lane)
         if bending > 0.0:
-            for k in range(get(starts, cell), get(starts, cell + 1)):
-                other = get(cell_of, k)
+            for k in range(get(starts, block), get(starts, block + 1)):
+                other, factor = get(cell_of, k), 2.0 * bending * get(weights, k)
                 if other >= 0:
                     for m in range(9):
-                        s[m] += 2.0 * bending * get(weights, k) * get(rotations, 9 * other + m)
-        nearest_rotation(s, r, horn, vectors)
-        for m in range(9):
-            put(rotations, 9 * cell + m, r[m])
-        energy += _misfit(starts, around, weights, edges, points, cell, p, r)
+                        put(s, 8 * m, get(s, 8 * m) + factor * get(rotations, 9 * other + m))
+        nearest_rotations(s, r, count, one, horn, vectors)
+        for lane in range(count):
+            for m in range(9):
+                put(rotations, 9 * (block + lane) + m, get(r, 8 * m + lane))
+        for cell in range(block, block + count):
+            energy += _misfit(starts, around, weights, edges, points, cell, 3 * get(centers, cell), rotations)
     return energy
 
 
