@@ -15,6 +15,18 @@ def _disturbed(deformer: Deformer, size: float = 0.05) -> Deformer:
     return deformer.moved(rest + np.random.default_rng(3).normal(size=rest.shape) * size)
 
 
+def _box_around(mesh: pl.PolygonMesh) -> pl.PolygonMesh:
+    """A closed box of triangles that encloses a mesh."""
+    from scipy.spatial import ConvexHull
+
+    low, high = mesh.bounds
+    corners = np.stack(np.meshgrid(*zip(low - 0.2, high + 0.2, strict=True), indexing="ij"), axis=-1).reshape(-1, 3)
+    hull = ConvexHull(corners)
+    a, b, c = (corners[hull.simplices[:, i]] for i in range(3))
+    outwards = np.einsum("ij,ij->i", np.cross(b - a, c - a), hull.equations[:, :3]) > 0
+    return pl.PolygonMesh(corners, np.where(outwards[:, None], hull.simplices, hull.simplices[:, ::-1]))
+
+
 def every_deformer() -> dict[str, Deformer]:
     """Deformers by a name that begins with the name of their kind."""
     few = MESH.points[::23]
@@ -32,6 +44,7 @@ def every_deformer() -> dict[str, Deformer]:
         "bezier-patch-ffd": _disturbed(pl.BezierPatchFFD.around(MESH, axis="y")),
         "bspline-ffd": lattice(),
         "bspline-ffd planar": _disturbed(pl.BSplineFFD.around(MESH, shape=(3, 4, 1), edge="zero")),
+        "cage": _disturbed(pl.Cage(_box_around(MESH))),
         "clamped-ffd": _disturbed(pl.ClampedFFD.around(MESH, shape=(3, 4, 5))),
         "composition": pl.compose(lattice(), pl.Twist.around(MESH, angle=0.4)),
         "dirichlet-ffd": _disturbed(pl.DirichletFFD(few, smooth=True)),
@@ -48,6 +61,7 @@ def every_deformer() -> dict[str, Deformer]:
         "radial-basis-warp": pl.RadialBasisWarp(few, few + 0.1, support=3.0),
         "random-field": field,
         "scale": pl.Scale(x=1.2, y=0.7, origin=(0, 0, 1)),
+        "shape-keys": pl.ShapeKeys(np.full((2, len(MESH.points), 3), 0.1), ("up", "down"), [0.5, 1.0]),
         "sine": pl.Sine.around(MESH, amplitude=0.1, waves=2, normal="x"),
         "skeleton-edit": pl.SkeletonEdit(ROI, HANDLE, goal=GOAL, scalar=MESH.points[:, 2]),
         "squash": pl.Squash.around(MESH, factor=0.7),

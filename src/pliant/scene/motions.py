@@ -18,7 +18,7 @@ _STILL = 1e-9  # of the largest change: less of one leaves no place where it is
 
 def between(first: Floats, second: Floats, part: float) -> Floats:
     """(4, 4) the map at a part of the way from one (4, 4) affine map to another; beyond 0 and 1 it goes on."""
-    way = np.linalg.solve(first, second)
+    way = np.asarray(np.linalg.solve(first, second), np.float64)
     linear, offset = way[:3, :3], way[:3, 3]
     turn = nearest_rotations(linear[None])[0]
     stretch = turn.T @ linear

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from pliant.deformer import Controls
 from pliant.mesh import Points, PolygonMesh
 from pliant.scene.frames import turned
-from pliant.scene.layer import Layer
+from pliant.scene.layer import Layer, blended
 
 if TYPE_CHECKING:
     from pliant.scene.stack import Stack
@@ -57,6 +57,7 @@ class LayerDrag:
             stage = _Stage(step.layer, step.at, stages[-1].points, np.array(step.points), mesh, added)
             if not step.layer.in_space:
                 stage.own = self._binding._evaluator.binding(step).deform(_goal(step.layer))
+            stages[-1].kept = stage.turns
             stages.append(stage)
         return stages
 
@@ -97,22 +98,29 @@ class LayerDrag:
         self._controls = np.array(controls, np.float64)
         if not self._heard or not len(touched):
             return np.empty(0, np.int64)
-        self._stages[0].settle(_rows(touched, len(self._result)), self._drag.points)
+        rows = _rows(touched, len(self._result))
+        here: Points | None = self._stages[0].settle(rows, None, self._drag.points)
         for stage in self._stages[1:]:
-            touched = stage.reached(touched)
-            stage.settle(_rows(touched, len(self._result)), stage.own)
+            if stage.turns:
+                touched = stage.reached(touched)
+                rows, here = _rows(touched, len(self._result)), None
+            here = stage.settle(rows, here, stage.own)
         return touched
 
 
 class _Stage:
-    """The dragged layer, or one above it: its input, its output, and how to bring some rows of it up to date."""
+    """The dragged layer, or one above it: its input, its output, and how to bring some rows of it up to date.
+
+    Rows travel from stage to stage by themselves; only where all points are needed, ``kept``, are they stored.
+    """
 
     def __init__(self, layer: Layer, at: Points, below: Points, points: Points, target: Any, added: bool) -> None:
         self.layer, self.below, self.points = layer, below, points
         self.own: Points | None = None  # where the deformer alone puts the points; None = to be computed
+        self.kept = True
         self._rest, self._mesh = at, target
-        self._turns = not layer.in_space and not added and isinstance(target, PolygonMesh)
         self._plain = layer.in_space and not added
+        self.turns = not layer.in_space and not added and isinstance(target, PolygonMesh)
 
     def displacement(self, image: Points, rows: Rows = slice(None)) -> Points:
         strength = self.layer.strength
@@ -121,7 +129,7 @@ class _Stage:
 
     def reached(self, touched: NDArray[np.integer]) -> NDArray[np.integer]:
         """The points that change when some below have: where the surface turns, their neighbours too."""
-        if not self._turns or len(touched) == len(self.points):
+        if len(touched) == len(self.points):
             return touched
         assert isinstance(self._mesh, PolygonMesh)
         marked = np.zeros(len(self.points), bool)
@@ -130,26 +138,40 @@ class _Stage:
         marked[around.reshape(-1)] = True
         return np.flatnonzero(marked)
 
-    def settle(self, rows: Rows, image: Points | None) -> None:
-        """Bring some rows up to date; ``image`` is where the deformer alone puts the points."""
-        if self._plain:
+    def settle(self, rows: Rows, below: Points | None, image: Points | None) -> Points:
+        """Bring some rows up to date, and return them.
+
+        Parameters
+        ----------
+        rows
+            Which.
+        below
+            What the stage below made of them; None = what it has stored.
+        image
+            (n, 3) where the deformer alone puts the points; None = to be computed.
+        """
+        if below is None:
             below = self.below[rows]
-            moved = self.layer.deformer._deformed(below) if image is None else image[rows]
+        if self._plain:
+            moved = self.layer.deformer._deformed(below) if image is None else np.array(image[rows])
             strength = self.layer.strength
-            factor = strength[rows, None] if isinstance(strength, np.ndarray) else strength
-            self.points[rows] = (
-                moved if isinstance(factor, float) and factor == 1.0 else below + factor * (moved - below)
-            )
-            return
-        assert image is not None
-        displacement = self.displacement(image, rows)
-        if self._turns:
+            here = blended(below, moved, strength[rows] if isinstance(strength, np.ndarray) else strength)
+        else:
+            assert image is not None
+            here = below + self._carried(self.displacement(image, rows), rows)
+        if self.kept:
+            self.points[rows] = here
+        return here
+
+    def _carried(self, displacement: Points, rows: Rows) -> Points:
+        """Displacements of the shape at rest, turned as the surface below has turned."""
+        if self.turns:
             assert isinstance(self._mesh, PolygonMesh)
             vertices = np.arange(len(self.points)) if isinstance(rows, slice) else rows
             some = np.flatnonzero(displacement.any(axis=1))
             rotation = turned(self._mesh, self.below, np.asarray(vertices[some], np.int64))
             displacement[some] = np.einsum("nij,nj->ni", rotation, displacement[some])
-        self.points[rows] = self.below[rows] + displacement
+        return displacement
 
 
 def _rows(touched: NDArray[np.integer], count: int) -> Rows:

@@ -67,7 +67,9 @@ class MorphWriter:
         known: dict[tuple[int, bytes], int] = {}
         for share in self._shares:
             own = np.linalg.solve(share.linear, displacements[share.vertices].T).T
-            local = np.ascontiguousarray(as_float32(own, "glTF")[0]) + np.float32(0.0)  # no negative zeros
+            local = np.ascontiguousarray(as_float32(np.asarray(own, np.float64), "glTF")[0]) + np.float32(
+                0.0
+            )  # no negative zeros
             key = len(local), local.tobytes()
             if key not in known:
                 known[key] = self._accessor(local)
