@@ -37,6 +37,7 @@ NUMBERS = {
     "flare": (0.244132, 1e-5),  # the square of the narrowest scale
     "fold_certificate": (0.391395, 1e-3),  # the step at which the first fold begins
     "hero": (3 * 96 / 72, 1e-12),  # three panels
+    "key_frames": (0.0, 0.02),  # both keep the volume; the mesh is coarse
     "laplacian_edit": (0.0, 1e-12),  # the handle is held
     "local_support": (0.125563, 1e-5),
     "place": (0.0, 0.0),  # no point is moved by the tool everywhere it goes
@@ -52,8 +53,10 @@ NUMBERS = {
     "smooth_patches": (0.0, 1e-6),  # no jump of the Jacobian
     "smoothing": (1.0, 0.01),  # Taubin keeps the volume
     "squash": (0.0, 1e-3),  # the faces are flat
+    "stack": (0.0, 0.0),  # all layers muted
     "tangent_frames": (1.1, 1e-5),  # each segment grows by a tenth
     "taper": (0.0, 1e-12),  # there and back
+    "templates": (0.0, 1e-6),  # loops close
     "thin_plate_spline": (0.0, 1e-10),  # landmarks are where they shall be
     "twist": (0.0, 1e-12),  # volume is kept
     "volume_change": (1.110635, 1e-5),

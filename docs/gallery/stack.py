@@ -14,7 +14,7 @@ from PIL import Image
 import pliant as pl
 
 
-def main(out: Path, size: tuple[int, int] = (1600, 700)) -> float:
+def main(out: Path, size: tuple[int, int] = (1800, 620)) -> float:
     body = figure()
     lattice = pl.BSplineFFD.around(body, shape=(5, 4, 6), margin=0.05)
     controls = lattice.rest.copy()

@@ -31,7 +31,7 @@ def main(out: Path, size: tuple[int, int] = (2100, 2160)) -> float:
         ImageDraw.Draw(strip).text((6, 4), name, fill=(60, 64, 72), font_size=max(cell[1] // 11, 8))
         sheet.paste(strip, (place % COLUMNS * strip.width, place // COLUMNS * cell[1]))
         if clip.ending == "loop":
-            end = clip.on(body, clip.stack).stack_at(clip.duration * (1 - 1e-9))(body).points
+            end = clip.stack_at(clip.duration * (1 - 1e-9))(body).points
             gap = max(gap, float(np.abs(end - clip.sample(0.0).points).max()))
     sheet.resize(size).save(out / "templates.png")
     return gap
