@@ -77,12 +77,12 @@ class Cholesky:
         x = np.zeros((self.size, 3))
         for begin in range(0, columns.shape[1], 3):
             part = columns[:, begin : begin + 3]
-            x[:, : part.shape[1]] = part[self._places]
+            x[:, : part.shape[1]] = np.take(part, self._places, axis=0)
             supernodes.solve_three(
                 self._first, self._rows, self._row_starts, self._blocks, self._block_starts, self._pivots,
                 self._largest, x.reshape(-1),
             )  # fmt: skip
-            result[self._places, begin : begin + 3] = x[:, : part.shape[1]]
+            result[:, begin : begin + 3] = np.take(x, self._back, axis=0)[:, : part.shape[1]]
         return result.reshape(right.shape)
 
     def _factor(self, matrix: Any) -> None:
@@ -115,6 +115,7 @@ class Cholesky:
             )
         self._pivots = pivots
         self._places = places if order is None else order[places]
+        self._back = np.argsort(self._places)
         self._keep(factors.L)
 
     def _keep(self, lower: Any) -> None:
