@@ -21,7 +21,7 @@ def main(out: Path, size: tuple[int, int] = (800, 900)) -> float:
     deformer = pl.Cage(cage)
     controls = cage.points.copy()
     for side, angle in ((1, 0.9), (-1, -0.5)):
-        reach = (np.clip((side * controls[:, 0] - 0.24) / 0.1, 0, 1) * (cage.points[:, 2] > 0.8))[:, None]
+        reach = (np.clip((side * controls[:, 0] - 0.24) / 0.1, 0, 1) * (cage.points[:, 2] > 0.7))[:, None]
         turn = side * angle
         about = np.array([side * 0.15, 0, 1.42])
         rotation = np.array([[np.cos(turn), 0, -np.sin(turn)], [0, 1, 0], [np.sin(turn), 0, np.cos(turn)]])
