@@ -80,6 +80,7 @@ export function mount(root: HTMLElement, transport: Transport, antialias = true)
   });
   studio.session.catalogue.onChange(() => field.rebuild());
 
+  studio.session.on("failure", ({ head }) => studio.toasts.error(head["message"] as string));
   loadMeshes(studio);
   listen(studio);
   const stopKeys = listenKeys(studio, { actions, compare, modes, setMode });

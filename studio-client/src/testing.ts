@@ -12,6 +12,7 @@ export interface TestHandle {
   controlPoint: (index: number) => { x: number; y: number } | null;
   controlPosition: (index: number) => number[] | null;
   selection: () => number[];
+  gizmoRadius: () => number;
   vertex: (index: number) => { x: number; y: number };
   position: (index: number) => number[];
   look: (x: number, y: number, z: number) => void;
@@ -45,6 +46,7 @@ export function exposeForTests({ studio, modes, setMode }: App): void {
     controlPoint: (index) => onPage(points.screen(index)),
     controlPosition: (index) => points.points?.at(index).toArray() ?? null,
     selection: () => [...(points.points?.selected ?? [])].sort((a, b) => a - b),
+    gizmoRadius: () => points.gizmoRadius,
     vertex: (index) => onPage(viewport.project(new Vector3(...(position(index) as [number, number, number]))))!,
     position,
     look: (x, y, z) => studio.frame(undefined, new Vector3(x, y, z)),

@@ -10,6 +10,7 @@ import os
 import time
 import uuid
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from pathlib import Path
 from threading import Lock, Timer
 
@@ -17,6 +18,7 @@ import orjson
 
 from pliant.errors import InvalidParameter, PliantError
 from pliant.io.files import write_bytes
+from pliant.mesh import PolygonMesh
 from pliant.scene.scene import Scene
 
 DELAY = 1.5  # seconds after the last change
@@ -68,12 +70,17 @@ class Autosave:
             self._waiting = None
         self._writer.submit(_remove, self._own)
 
-    def finish(self) -> None:
-        """Write what waits, and end."""
+    def flush(self) -> None:
+        """Write what waits, now."""
         with self._lock:
             if self._timer is not None:
                 self._timer.cancel()
-        self._writer.submit(self._write)
+                self._timer = None
+        self._writer.submit(self._write).result()
+
+    def finish(self) -> None:
+        """Write what waits, and end."""
+        self.flush()
         self._writer.shutdown(wait=True)
 
     def recoverable(self) -> list[dict[str, str]]:
@@ -119,11 +126,27 @@ class Autosave:
             waiting, self._waiting, self._timer = self._waiting, None, None
         if waiting is None:
             return
+        scene, name = waiting
         try:
-            save_project(waiting[0], self._own)
+            save_project(scene.replace(mesh=self._with_textures(scene.mesh)), self._own)
         except (PliantError, OSError):
             _remove(self._own)  # the scene holds what no file can: better nothing than something old
 
+    def _with_textures(self, mesh: PolygonMesh) -> PolygonMesh:
+        """The mesh with copies of its textures beside the project, which refers to nothing elsewhere."""
+        library = {}
+        for name, material in mesh.material_library.items():
+            found = material.texture
+            if found is not None and found.is_file():
+                copy = self.folder / f"{self._own.stem}-{found.name}"
+                if not copy.is_file():
+                    write_bytes(copy, found.read_bytes())
+                material = replace(material, texture=copy)
+            library[name] = material
+        return mesh.replace(material_library=library)
+
 
 def _remove(path: Path) -> None:
-    path.unlink(missing_ok=True)
+    """Remove a project, and the textures beside it."""
+    for each in (path, *path.parent.glob(f"{path.stem}-*")):
+        each.unlink(missing_ok=True)

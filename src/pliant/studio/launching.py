@@ -173,6 +173,7 @@ def _listen(port: int | None) -> socket.socket:
             if number == port:
                 raise PortInUse(f"port {port} is in use: give another with --port, or leave it out") from error
             continue
+        listening.listen(128)  # who comes before the server runs waits for it
         listening.set_inheritable(True)
         return listening
     raise PortInUse("no port is free")

@@ -15,6 +15,7 @@ from pliant.scene.layer import Layer
 from pliant.scene.scene import Scene
 from pliant.scene.values import encode
 from pliant.studio.lattices import lattice_shape
+from pliant.studio.parts import parts_of
 from pliant.studio.titles import titled
 
 if TYPE_CHECKING:
@@ -55,6 +56,7 @@ def _mesh(scene: Scene, number: int, name: str) -> dict[str, Any]:
         "diagonal": mesh.diagonal or 1.0,
         "textured": any(material.texture for material in mesh.material_library.values()),
         "closed": mesh.edge_use == (0, 0),
+        "parts": list(parts_of(scene)),
     }
 
 

@@ -3,7 +3,6 @@
 import type { Language } from "./settings";
 
 const TABLE = {
-  appName: ["pliant studio", "pliant studio"],
   untitled: ["Untitled", "未命名"],
   unsaved: ["edited", "已修改"],
   // commands
@@ -19,7 +18,6 @@ const TABLE = {
   redo: ["Redo", "重做"],
   cancel: ["Cancel", "取消"],
   close: ["Close", "关闭"],
-  apply: ["Apply", "应用"],
   create: ["Create", "创建"],
   add: ["Add", "添加"],
   remove: ["Delete", "删除"],
@@ -80,7 +78,6 @@ const TABLE = {
   alongShape: ["Along the shape", "沿形状主轴"],
   around: ["Around", "范围"],
   wholeMesh: ["The whole mesh", "整个网格"],
-  selectedPart: ["The selected part", "所选部分"],
   tooManyPoints: ["That is more than the studio can drag: at most 100 000 control points.", "控制点过多：最多 100 000 个。"],
   // control points
   selection: ["Selection", "选择"],
@@ -93,9 +90,7 @@ const TABLE = {
   resetAll: ["Reset all", "全部重置"],
   lockPoints: ["Lock", "锁定"],
   unlockPoints: ["Unlock", "解锁"],
-  lockedPoints: ["locked", "已锁定"],
   selectAll: ["Select all", "全选"],
-  selectNone: ["Select none", "取消选择"],
   layerOf: ["Layer", "层"],
   toolMove: ["Move", "移动"],
   toolRotate: ["Rotate", "旋转"],
@@ -111,7 +106,6 @@ const TABLE = {
   pivotCenter: ["Centre", "中心"],
   pivotOrigin: ["Origin", "原点"],
   pivotLast: ["Last point", "末点"],
-  axisLocked: ["Locked to", "锁定于"],
   // field
   field: ["Field", "形变场"],
   gridLines: ["Grid lines", "网格线"],
@@ -217,7 +211,6 @@ const TABLE = {
     "The studio was started anew. Open the address that it printed.",
     "studio 已重新启动，请打开它显示的新地址。",
   ],
-  working: ["Working …", "正在处理…"],
   loading: ["Reading", "正在读取"],
   saved: ["Saved", "已保存"],
   uploadTooLarge: ["This file is larger than the studio takes", "文件超过大小限制"],
@@ -231,7 +224,6 @@ const TABLE = {
   noProperties: ["Select a layer to see what it is made of.", "选择图层以查看属性。"],
   notEditable: ["set by dragging or in Python", "通过拖动或 Python 设置"],
   degrees: ["°", "°"],
-  yes: ["Yes", "是"],
   // server's folder
   folder: ["Folder", "文件夹"],
   emptyFolder: ["No mesh or project here.", "此处没有网格或项目。"],

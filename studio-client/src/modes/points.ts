@@ -157,6 +157,12 @@ export class PointsMode implements Mode {
     return true;
   }
 
+  /** How far its rings are from the middle of the gizmo, in pixels. */
+  get gizmoRadius(): number {
+    const pivot = this.pivot();
+    return pivot && this.gizmo ? this.gizmo.radius(pivot) / this.studio.viewport.pixel(pivot) : 0;
+  }
+
   /** Where a control point is on the screen. */
   screen(index: number): { x: number; y: number } | null {
     return this.points ? this.studio.viewport.project(this.points.at(index)) : null;

@@ -3,14 +3,15 @@
 import { h } from "../core/dom";
 import { t } from "../core/strings";
 import type { Studio } from "../studio";
-import { numberField, row, segments, slider } from "./controls";
+import { numberField, row, segments, select, slider } from "./controls";
 import { openDialog } from "./dialog";
 
 const MOST = 100_000;
 
 export function newLattice(studio: Studio, basis: "bspline" | "bezier" = "bspline"): void {
   if (!studio.scene?.mesh) return;
-  const choice = { basis, shape: [4, 4, 4], margin: 0.05, orientation: "axes" as "axes" | "shape", layer: studio.activeLayer.value };
+  const choice = { basis, shape: [4, 4, 4], margin: 0.05, orientation: "axes" as "axes" | "shape", part: "" };
+  const { parts } = studio.scene.mesh;
   const shape = h(
     "div",
     { class: "vector" },
@@ -23,6 +24,11 @@ export function newLattice(studio: Studio, basis: "bspline" | "bezier" = "bsplin
     { class: "form" },
     row(t("latticeKind"), segments([["bspline", t("bspline")], ["bezier", t("bezier")]], basis, (value) => (choice.basis = value))),
     row(t("shape"), shape),
+    parts.length > 0 &&
+      row(
+        t("around"),
+        select([["", t("wholeMesh")], ...parts.map((part) => [part, part] as const)], "", (part) => (choice.part = part), t("around")),
+      ),
     row(
       t("margin"),
       slider(choice.margin, {

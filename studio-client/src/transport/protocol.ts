@@ -67,6 +67,8 @@ export interface MeshFacts {
   diagonal: number;
   textured: boolean;
   closed: boolean;
+  /** Groups, objects, materials and selections, around which a lattice can be laid. */
+  parts: string[];
 }
 
 export interface SceneState {

@@ -1,6 +1,6 @@
 // The gizmo that moves, turns and scales what is selected, about a pivot.
 
-import { Matrix4, Object3D, Quaternion, Vector3 } from "three";
+import { Matrix4, Object3D, OrthographicCamera, Quaternion, Vector3 } from "three";
 import { TransformControls } from "three/examples/jsm/controls/TransformControls.js";
 import type { Viewport } from "./viewport";
 
@@ -58,6 +58,15 @@ export class Gizmo {
       this.controls.attach(this.anchor);
     }
     this.viewport.request();
+  }
+
+  /** The radius of its rings at a place, in the scene's unit: as the controls scale themselves. */
+  radius(at: Vector3): number {
+    const camera = this.viewport.cameras.active;
+    const size = this.controls.size / 4;
+    if (camera instanceof OrthographicCamera) return (0.5 * size * (camera.top - camera.bottom)) / camera.zoom;
+    const reach = 1.9 * Math.tan((Math.PI * camera.fov) / 360) / camera.zoom;
+    return 0.5 * size * at.distanceTo(camera.position) * Math.min(reach, 7);
   }
 
   /** Let go without finishing. */

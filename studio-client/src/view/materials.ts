@@ -1,6 +1,6 @@
 // Materials of the mesh, and their textures, which arrive as the bytes of picture files.
 
-import { Color, DoubleSide, MeshStandardMaterial, RepeatWrapping, SRGBColorSpace, Texture } from "three";
+import { Color, DoubleSide, MeshPhongMaterial, RepeatWrapping, SRGBColorSpace, Texture } from "three";
 import type { Palette } from "./colors";
 import type { Settings } from "../core/settings";
 
@@ -11,7 +11,7 @@ export interface MaterialFacts {
 }
 
 export class MaterialSet {
-  list: MeshStandardMaterial[] = [plain()];
+  list: MeshPhongMaterial[] = [plain()];
   onChange: () => void = () => undefined;
   private facts: MaterialFacts[] = [];
   private readonly textures = new Map<number, Texture>();
@@ -67,10 +67,10 @@ export class MaterialSet {
   }
 }
 
-function plain(): MeshStandardMaterial {
-  return new MeshStandardMaterial({
-    roughness: 0.62,
-    metalness: 0,
+function plain(): MeshPhongMaterial {
+  return new MeshPhongMaterial({
+    specular: 0x1c1f24,
+    shininess: 38,
     side: DoubleSide,
     polygonOffset: true,
     polygonOffsetFactor: 1,

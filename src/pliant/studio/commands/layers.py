@@ -12,6 +12,7 @@ from pliant.space.bspline_ffd import BSplineFFD
 from pliant.studio.frames import Frame
 from pliant.studio.lattices import principal_axes
 from pliant.studio.layering import with_fields, with_layer
+from pliant.studio.parts import vertices_of
 from pliant.studio.request import Request, command
 from pliant.studio.session import Session
 from pliant.studio.titles import titled
@@ -37,9 +38,10 @@ def add(session: Session, request: Request) -> Frame:
 
 @command("lattice.add")
 def lattice(session: Session, request: Request) -> Frame:
-    """A lattice around the shape as it is now."""
+    """A lattice around the shape as it is now, or around a part of it."""
     scene = session.required
-    points = session.shown.binding.result
+    points, part = session.shown.binding.result, request.text("part", "")
+    points = points[vertices_of(scene, part)] if part else points
     shape = tuple(int(count) for count in request.several("shape", 3))
     if any(count < 1 for count in shape) or np.prod(shape, dtype=float) > MOST_CONTROLS:
         raise InvalidParameter(f"a lattice has 1 to {MOST_CONTROLS:,} control points; asked for {shape}")

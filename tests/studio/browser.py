@@ -1,0 +1,91 @@
+"""What tests do in a browser: wait, look at pixels, drag, and read the page's own handle."""
+
+import io
+import time
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+
+FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"]
+PICTURES = Path(__file__).parent / "pictures"  # looked at by people; not in the repository
+
+
+class View:
+    """A page on a studio."""
+
+    def __init__(self, page, studio, complaints):
+        self.page, self.studio, self.complaints = page, studio, complaints
+        self.until("window.pliantStudio !== undefined && document.querySelector('.link.open') !== null")
+
+    @property
+    def session(self):
+        return self.studio.session
+
+    def ask(self, script):
+        return self.page.evaluate(script)
+
+    def until(self, script, patience=15.0):
+        """Wait until a script is true: the page's policy forbids it to evaluate strings itself."""
+        end = time.monotonic() + patience
+        while time.monotonic() < end:
+            if self.page.evaluate(script):
+                return
+            time.sleep(0.02)
+        raise AssertionError(f"never came true: {script}")
+
+    def drawn(self):
+        """Wait until a mesh is there, and all that was asked for has been drawn."""
+        self.until("document.querySelector('.start').hidden && window.pliantStudio.frames > 1")
+        self.settled()
+
+    def settled(self):
+        """Wait until the page shows what the session shows, and draws no more."""
+        self.until(f"window.pliantStudio.revision === {self.session.revision}")
+        before = -1
+        while before != (now := self.ask("window.pliantStudio.frames")):
+            before = now
+            time.sleep(0.12)
+
+    def handles(self):
+        """Wait until control points can be taken hold of."""
+        self.until("window.pliantStudio.controlPoint(0) !== null")
+        self.settled()
+
+    def control(self, index):
+        """Where a control point is on the page."""
+        at = self.ask(f"window.pliantStudio.controlPoint({index})")
+        return at["x"], at["y"]
+
+    def drag(self, start, by, steps=5, release=True):
+        x, y = start
+        self.page.mouse.move(x, y)
+        self.page.mouse.down()
+        self.page.mouse.move(x + by[0], y + by[1], steps=steps)
+        if release:
+            self.page.mouse.up()
+
+    def committed(self, revision):
+        """Wait until the session has gone on."""
+        end = time.monotonic() + 15
+        while self.session.revision <= revision:
+            assert time.monotonic() < end, "nothing was committed"
+            time.sleep(0.02)
+        self.settled()
+
+    def positions(self, count):
+        """(count, 3) where the page draws the first points."""
+        found = self.ask(f"Array.from({{length: {count}}}, (_, i) => window.pliantStudio.position(i))")
+        return np.array(found)
+
+    def picture(self, name):
+        """A screenshot, kept for people, as (height, width, 3) pixels."""
+        PICTURES.mkdir(exist_ok=True)
+        data = self.page.screenshot(path=PICTURES / f"{name}.png")
+        return np.asarray(Image.open(io.BytesIO(data)).convert("RGB"))
+
+    def pixel(self, x, y):
+        """The colour at a place of the page."""
+        clip = {"x": round(x), "y": round(y), "width": 1, "height": 1}
+        data = self.page.screenshot(clip=clip)
+        return np.asarray(Image.open(io.BytesIO(data)).convert("RGB"))[0, 0].astype(int)
