@@ -198,6 +198,9 @@ def test_paraview_finds_what_a_pvd_lists(moving, motion, tmp_path):
     assert np.abs(reader.read()[0].points - motion.points[3]).max() < 1e-12
 
 
+@pytest.mark.filterwarnings(
+    "ignore::pytest.PytestUnraisableExceptionWarning"
+)  # the encoder's library leaves pipes open
 @pytest.mark.parametrize("ending", [".gif", ".mp4"])
 def test_films_show_something_that_moves(ending, moving, tmp_path):
     import imageio.v3 as imageio

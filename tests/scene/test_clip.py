@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from scene_shapes import GOAL, HANDLE, MESH, ROI, lattice, mixed_stack, space_stack
 
@@ -28,6 +28,7 @@ def test_easings_begin_and_end_where_they_must(name):
     assert eased(name, 1.0) == pytest.approx(1.0, abs=1e-12)
 
 
+@settings(deadline=None)
 @given(parts)
 def test_easings_that_are_each_others_mirror(part):
     assert eased("ease_in", part) == pytest.approx(1 - eased("ease_out", 1 - part), abs=1e-9)
@@ -35,6 +36,7 @@ def test_easings_that_are_each_others_mirror(part):
         assert eased(symmetric, part) == pytest.approx(1 - eased(symmetric, 1 - part), abs=1e-9)
 
 
+@settings(deadline=None)
 @given(parts, st.sampled_from(sorted(CURVES)))
 def test_a_bezier_curve_passes_through_its_own_points(s, name):
     """At the curve's parameter s its time is x(s), and there its value is y(s)."""
@@ -53,6 +55,7 @@ def test_values_between_keys():
     assert float(track.at(3.5)) == pytest.approx(eased("ease_in", 0.5))
 
 
+@settings(deadline=None)
 @given(st.lists(st.floats(-5, 5), min_size=3, max_size=6), st.floats(0.1, 2.0))
 def test_a_cubic_track_is_smooth_and_passes_through_its_keys(values, width):
     keys = tuple(Key(i * width, value, "cubic") for i, value in enumerate(values))
@@ -121,12 +124,14 @@ places = st.tuples(*[st.floats(-5, 5)] * 3)
 axes = st.sampled_from(["x", "y", "z", (1.0, 1.0, 0.0), (1.0, -2.0, 0.5)])
 
 
+@settings(deadline=None)
 @given(axes, angles, places, parts)
 def test_between_placements_lies_the_part_of_the_turn(axis, angle, place, part):
     whole, some = (pl.Affine.rotation(axis, a, origin=place).matrix for a in (angle, part * angle))
     assert np.abs(between(np.eye(4), whole, part) - some).max() < 1e-7
 
 
+@settings(deadline=None)
 @given(axes, angles, places, places, parts)
 def test_what_lies_between_does_not_depend_on_the_origin(axis, angle, place, shift, part):
     first = pl.Affine.rotation("y", 0.4, origin=shift).matrix

@@ -7,7 +7,7 @@ import tomllib
 import numpy as np
 import pytest
 from every_deformer import every_deformer
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from scene_shapes import MASK, MESH, mixed_stack, space_stack
 
@@ -230,6 +230,7 @@ scalars = st.one_of(st.booleans(), st.integers(-(2**62), 2**62), st.floats(allow
 values = st.recursive(scalars, lambda inner: st.one_of(st.lists(inner, max_size=3), st.dictionaries(words, inner)))
 
 
+@settings(deadline=None)
 @given(st.dictionaries(words, values, max_size=4))
 def test_whatever_is_written_as_toml_reads_back(document):
     assert tomllib.loads(toml_text(document)) == document

@@ -13,6 +13,7 @@ from pliant.numerics.rotations import nearest_rotations, rotations_of
 
 Floats = NDArray[np.float64]
 
+_NOTHING = 1e-14  # of a linear part: what rounding leaves
 _STILL = 1e-9  # of the largest change: less of one leaves no place where it is
 
 
@@ -23,7 +24,8 @@ def between(first: Floats, second: Floats, part: float) -> Floats:
     turn = nearest_rotations(linear[None])[0]
     stretch = turn.T @ linear
     partial = rotations_of(part * _vector(turn)[None])[0] @ ((1 - part) * np.eye(3) + part * stretch)
-    still = np.linalg.pinv(np.eye(3) - linear, rcond=_STILL) @ offset
+    change = np.eye(3) - linear
+    still = np.linalg.pinv(change, rcond=_STILL) @ offset if np.abs(change).max() > _NOTHING else np.zeros(3)
     result = np.eye(4)
     result[:3, :3] = partial
     result[:3, 3] = still - partial @ still + part * (offset - still + linear @ still)
