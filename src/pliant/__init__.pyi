@@ -1,4 +1,5 @@
 from . import batch as batch
+from . import cad as cad
 from . import shapes as shapes
 from . import studio as studio
 from .batch.outcome import Outcome as Outcome

@@ -21,7 +21,8 @@ def cube_sphere(cells: int) -> tuple[Points, NDArray[np.int32]]:
     u, v = np.meshgrid(steps, steps, indexing="ij")
     at = np.arange((cells + 1) ** 2).reshape(cells + 1, cells + 1)
     cell = np.stack([at[:-1, :-1], at[1:, :-1], at[1:, 1:], at[:-1, 1:]], axis=-1).reshape(-1, 4)
-    sides, faces = [], []
+    sides: list[Points] = []
+    faces = []
     for axis in range(3):
         for sign in (1.0, -1.0):
             side = np.empty((u.size, 3))
@@ -38,11 +39,12 @@ def lathe(radii: NDArray[np.float64], heights: NDArray[np.float64], around: int)
     """A closed outline of radii and heights, from below, turned about z; radius 0 is a pole, others get lids."""
     angle = 2 * np.pi * np.arange(around) / around
     circle = np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    points, rings = [], []
+    points: list[tuple[float, float, float]] = []
+    rings = []
     for radius, height in zip(radii, heights, strict=True):
         count = 1 if radius == 0 else around
         rings.append(np.full(around, len(points)) if count == 1 else len(points) + np.arange(around))
-        points += [(*(radius * circle[i]), height) for i in range(count)]
+        points += [(radius * circle[i, 0], radius * circle[i, 1], height) for i in range(count)]
     faces: Faces = []
     for low, high in pairwise(rings):
         for i in range(around):

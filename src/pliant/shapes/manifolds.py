@@ -9,6 +9,7 @@ import numpy as np
 from pliant.attributes import FaceLabels
 from pliant.errors import InvalidMesh, MissingExtra
 from pliant.mesh import PolygonMesh
+from pliant.numerics.ragged import Ragged
 
 Names = dict[int, str]
 
@@ -56,7 +57,7 @@ def mesh_of(solid: Any, names: Names) -> PolygonMesh:
     numbers = [words.index(names.get(int(each), "solid")) for each in ids]
     labels = np.repeat(np.array(numbers, np.int32), np.diff(ends).astype(np.int64))
     faces = np.asarray(found.tri_verts, np.int32).reshape(-1, 3)
-    return PolygonMesh(np.asarray(found.vert_properties)[:, :3], faces, groups=FaceLabels(words, labels))
+    return PolygonMesh(np.asarray(found.vert_properties)[:, :3], Ragged.of(faces), groups=FaceLabels(words, labels))
 
 
 def import_manifold() -> Any:

@@ -1,0 +1,126 @@
+"""A part from CAD: solids bounded by trimmed parametric surfaces."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pliant.cad.joins import kinks
+from pliant.cad.kernel import kernel, parts_of
+from pliant.cad.rebuilding import rebuilt
+from pliant.deformer import SpaceDeformer
+from pliant.errors import InvalidParameter, InvalidTarget, NotConverged
+from pliant.mesh import PolygonMesh
+from pliant.numerics.ragged import Ragged
+from pliant.scene.stack import Stack
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Part:
+    """A boundary representation. Immutable.
+
+    Parameters
+    ----------
+    shape
+        Open CASCADE's ``TopoDS_Shape``; lengths are millimetres.
+    """
+
+    shape: Any
+
+    def deformed(self, deformer: SpaceDeformer | Stack, *, tolerance: float | None = None) -> Part:
+        """The part after a deformation: its faces are B-spline surfaces that share their edges as before.
+
+        Parameters
+        ----------
+        deformer
+            A map of space, or a stack of them; in millimetres.
+        tolerance
+            How far new surfaces and edges may be from the exact images; knots are added until they are not. A length;
+            None = a hundred-thousandth of the diagonal.
+
+        Raises
+        ------
+        InvalidTarget
+            The deformer is no map of space.
+        InvalidParameter
+            A tolerance that is not positive.
+        NotConverged
+            Hundreds of spans do not meet the tolerance, or the result is no valid solid: the deformation may fold.
+        """
+        if not isinstance(deformer, SpaceDeformer | Stack):
+            raise InvalidTarget(f"a {type(deformer).__name__} is no map of space: it cannot deform a part")
+        allowed = 1e-5 * self.mesh().diagonal if tolerance is None else float(tolerance)
+        if not 0 < allowed < np.inf:
+            raise InvalidParameter(f"the tolerance is {tolerance}; it must be a positive length")
+        found = Part(rebuilt(self.shape, lambda points: np.asarray(deformer(points)), allowed))
+        if self.volume > 0 > found.volume:
+            found = Part(found.shape.Reversed())  # a mirror turned it inside out
+        if self.valid and not found.valid:
+            raise NotConverged("the deformed part is no valid solid: lower the tolerance, or see whether the map folds")
+        return found
+
+    def mesh(self, deviation: float = 1e-3) -> PolygonMesh:
+        """Its surface as triangles, closed where the part is.
+
+        Parameters
+        ----------
+        deviation
+            How far triangles may be from the surface, as part of the diagonal.
+        """
+        box = kernel("Bnd").Bnd_Box()
+        kernel("BRepBndLib").BRepBndLib.Add_s(self.shape, box)
+        kernel("BRepMesh").BRepMesh_IncrementalMesh(self.shape, deviation * np.sqrt(box.SquareExtent()), False, 0.3)
+        points: list[NDArray[np.float64]] = []
+        faces = []
+        for face in parts_of(self.shape, "face"):
+            some, triangles = _triangles(face)
+            faces.append(triangles + sum(map(len, points)))
+            points.append(some)
+        if not points:
+            raise InvalidTarget("the part has no faces")
+        places, vertex = np.unique(np.concatenate(points), axis=0, return_inverse=True)  # faces share what edges hold
+        corners = vertex.reshape(-1)[np.concatenate(faces)].astype(np.int32)
+        return PolygonMesh(places, Ragged.of(corners[(corners != np.roll(corners, 1, axis=1)).all(axis=1)]))
+
+    @cached_property
+    def volume(self) -> float:
+        """In cubic millimetres."""
+        found = kernel("GProp").GProp_GProps()
+        kernel("BRepGProp").BRepGProp.VolumeProperties_s(self.shape, found)
+        return float(found.Mass())
+
+    @cached_property
+    def valid(self) -> bool:
+        """Whether the kernel finds no fault: closed, oriented, edges on their faces."""
+        return bool(kernel("BRepCheck").BRepCheck_Analyzer(self.shape).IsValid())
+
+    @cached_property
+    def gap(self) -> float:
+        """The largest distance between an edge and the faces that it bounds."""
+        tool = kernel("BRep").BRep_Tool
+        return max((float(tool.Tolerance_s(edge)) for edge in parts_of(self.shape, "edge")), default=0.0)
+
+    @cached_property
+    def kinks(self) -> NDArray[np.float64]:
+        """(e,) for each edge the largest angle between the normals of its two faces, in radians; 0 = smooth, G¹."""
+        return kinks(self.shape)
+
+    def __repr__(self) -> str:
+        counts = (len(parts_of(self.shape, kind)) for kind in ("solid", "face", "edge"))
+        return "Part({} solids, {} faces, {} edges)".format(*counts)
+
+
+def _triangles(face: Any) -> tuple[Any, Any]:
+    """The triangulation of a face, outwards: (n, 3) points and (t, 3) corners."""
+    place = kernel("TopLoc").TopLoc_Location()
+    found = kernel("BRep").BRep_Tool.Triangulation_s(face, place)
+    if found is None:
+        return np.empty((0, 3)), np.empty((0, 3), np.int32)
+    nodes = [found.Node(i + 1).Transformed(place.Transformation()) for i in range(found.NbNodes())]
+    corners = np.array([found.Triangle(i + 1).Get() for i in range(found.NbTriangles())], np.int32) - 1
+    turned = face.Orientation() == kernel("TopAbs").TopAbs_REVERSED
+    return np.array([(p.X(), p.Y(), p.Z()) for p in nodes]), corners[:, ::-1] if turned else corners
