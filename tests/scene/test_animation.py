@@ -147,6 +147,7 @@ def test_usd_holds_polygons_texture_coordinates_and_materials(box_mesh, tmp_path
     assert np.allclose(st.ComputeFlattened(), mesh.uvs.per_corner, atol=1e-6)
     subsets = UsdShade.MaterialBindingAPI(prim).GetMaterialBindSubsets()
     assert sorted(len(subset.GetIndicesAttr().Get()) for subset in subsets) == [48, 48]
+    assert "@./skin.png@" in (tmp_path / "clip.usda").read_text()  # beside it, wherever both are moved
 
 
 def test_usd_transforms_move_the_points(tmp_path):

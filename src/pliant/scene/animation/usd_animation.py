@@ -30,7 +30,7 @@ def write_clip(clip: Clip, path: Path, progress: Progress | None, *, name: str =
     root = pxr.UsdGeom.Xform.Define(stage, "/scene")
     stage.SetDefaultPrim(root.GetPrim())
     prim = pxr.UsdGeom.Mesh.Define(stage, f"/scene/{safe}")
-    losses = _describe(pxr, stage, prim, clip.mesh)
+    losses = _describe(pxr, stage, prim, clip.mesh, path.parent)
     for code, frame in enumerate(clip.frames(progress)):
         points, _ = as_float32(frame.points, "USD")
         prim.GetPointsAttr().Set(pxr.Vt.Vec3fArray.FromNumpy(points), code)
@@ -61,7 +61,7 @@ def read(path: Path, fps: float) -> MeshSequence:
     return MeshSequence(np.stack(frames), np.array(codes) / rate)
 
 
-def _describe(pxr: Any, stage: Any, prim: Any, mesh: PolygonMesh) -> tuple[str, ...]:
+def _describe(pxr: Any, stage: Any, prim: Any, mesh: PolygonMesh, folder: Path) -> tuple[str, ...]:
     """What does not move: polygons, texture coordinates, colours, materials."""
     prim.CreateSubdivisionSchemeAttr("none")
     prim.CreateFaceVertexCountsAttr(pxr.Vt.IntArray.FromNumpy(mesh.faces.lengths.astype(np.int32)))
@@ -77,7 +77,7 @@ def _describe(pxr: Any, stage: Any, prim: Any, mesh: PolygonMesh) -> tuple[str, 
         scale = 255.0 if colors.dtype == np.uint8 else 1.0
         shown = values.CreatePrimvar("displayColor", kinds.Color3fArray, places.vertex)
         shown.Set(pxr.Vt.Vec3fArray.FromNumpy(np.ascontiguousarray(colors[:, :3] / scale, np.float32)))
-    _materials(pxr, stage, prim, mesh)
+    _materials(pxr, stage, prim, mesh, folder)
     kept = {"colors", "normals"}
     losses = [f"the vertex attribute {name!r}" for name in mesh.vertex_attributes if name not in kept]
     losses += [f"the face attribute {name!r}" for name in mesh.face_attributes]
@@ -85,7 +85,7 @@ def _describe(pxr: Any, stage: Any, prim: Any, mesh: PolygonMesh) -> tuple[str, 
     return tuple(losses)
 
 
-def _materials(pxr: Any, stage: Any, prim: Any, mesh: PolygonMesh) -> None:
+def _materials(pxr: Any, stage: Any, prim: Any, mesh: PolygonMesh, folder: Path) -> None:
     """Preview surfaces with their pictures, and the faces that wear each."""
     for place, (name, material) in enumerate(mesh.material_library.items()):
         safe = f"m{place}_" + re.sub(r"\W", "_", name, flags=re.ASCII)
@@ -101,7 +101,7 @@ def _materials(pxr: Any, stage: Any, prim: Any, mesh: PolygonMesh) -> None:
             reader.CreateInput("varname", pxr.Sdf.ValueTypeNames.String).Set("st")
             picture = pxr.UsdShade.Shader.Define(stage, f"/scene/materials/{safe}/picture")
             picture.CreateIdAttr("UsdUVTexture")
-            picture.CreateInput("file", pxr.Sdf.ValueTypeNames.Asset).Set(str(material.texture))
+            picture.CreateInput("file", pxr.Sdf.ValueTypeNames.Asset).Set(_beside(material.texture, folder))
             picture.CreateInput("st", pxr.Sdf.ValueTypeNames.Float2).ConnectToSource(reader.ConnectableAPI(), "result")
             color.ConnectToSource(picture.ConnectableAPI(), "rgb")
         if mesh.materials is not None and name in mesh.materials.names:
@@ -110,6 +110,14 @@ def _materials(pxr: Any, stage: Any, prim: Any, mesh: PolygonMesh) -> None:
                 safe, pxr.Vt.IntArray.FromNumpy(faces)
             )
             pxr.UsdShade.MaterialBindingAPI.Apply(subset.GetPrim()).Bind(made)
+
+
+def _beside(picture: Path, folder: Path) -> str:
+    """Where a picture is, seen from the file: scenes may be moved with what lies beside them."""
+    try:
+        return "./" + picture.resolve().relative_to(folder.resolve()).as_posix()
+    except ValueError:
+        return picture.resolve().as_posix()
 
 
 def _samples(pxr: Any, mesh: Any) -> list[float]:
