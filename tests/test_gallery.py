@@ -18,6 +18,7 @@ NUMBERS = {
     "bezier_ffd": (0.8, 0.2),  # the least volume ratio of the vase's dance: nothing folds
     "bezier_patch": (0.0, 1e-12),  # studs keep their height
     "bspline_ffd": (0.0, 1e-8),  # the inverse brings every point back
+    "cad_part": (0.0, 1e-4),  # a twist keeps volume, and so does its spline
     "cage_build": (0.0, 1e-12),  # at rest the figure stays where it is
     "cage_builder": (2.0, 0.0),  # one piece without a handle
     "cage_coordinates": (0.5016, 0.02),  # half of the shear is gone
@@ -52,6 +53,7 @@ NUMBERS = {
     "skeleton_edit": (0.3, 0.2),  # smooth, against torn
     "smooth_patches": (0.0, 1e-6),  # no jump of the Jacobian
     "smoothing": (1.0, 0.01),  # Taubin keeps the volume
+    "solid_tree": (0.0, 0.0),  # no edge is open
     "squash": (0.0, 1e-3),  # the faces are flat
     "stack": (0.0, 0.0),  # all layers muted
     "tangent_frames": (1.1, 1e-5),  # each segment grows by a tenth
