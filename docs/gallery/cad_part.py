@@ -8,9 +8,12 @@ a twist, which keeps volume, has lost.
 from pathlib import Path
 
 import numpy as np
+from OCP import BRepAlgoAPI, BRepFilletAPI, gp
+from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox, BRepPrimAPI_MakeCylinder
 from PIL import Image
 
 import pliant as pl
+from pliant.cad.kernel import parts_of
 
 
 def main(out: Path, size: tuple[int, int] = (1200, 900)) -> float:
@@ -27,19 +30,12 @@ def main(out: Path, size: tuple[int, int] = (1200, 900)) -> float:
 
 def bracket() -> pl.cad.Part:
     """A block of 40 x 20 x 60 mm whose edges are rounded, with three bores; usually pl.cad.read("bracket.step")."""
-    from OCP.BRepAlgoAPI import BRepAlgoAPI_Cut
-    from OCP.BRepFilletAPI import BRepFilletAPI_MakeFillet
-    from OCP.BRepPrimAPI import BRepPrimAPI_MakeBox, BRepPrimAPI_MakeCylinder
-    from OCP.gp import gp_Ax2, gp_Dir, gp_Pnt
-
-    from pliant.cad.kernel import parts_of
-
-    block = BRepPrimAPI_MakeBox(gp_Pnt(-20, -10, 0), 40.0, 20.0, 60.0).Shape()
-    rounding = BRepFilletAPI_MakeFillet(block)
+    block = BRepPrimAPI_MakeBox(gp.gp_Pnt(-20, -10, 0), 40.0, 20.0, 60.0).Shape()
+    rounding = BRepFilletAPI.BRepFilletAPI_MakeFillet(block)
     for edge in parts_of(block, "edge"):
         rounding.Add(3.0, edge)
     shape = rounding.Shape()
     for x, z, radius in ((0, 42, 9.0), (-10, 14, 4.0), (10, 14, 4.0)):
-        bore = BRepPrimAPI_MakeCylinder(gp_Ax2(gp_Pnt(x, -20, z), gp_Dir(0, 1, 0)), radius, 40.0).Shape()
-        shape = BRepAlgoAPI_Cut(shape, bore).Shape()
+        bore = BRepPrimAPI_MakeCylinder(gp.gp_Ax2(gp.gp_Pnt(x, -20, z), gp.gp_Dir(0, 1, 0)), radius, 40.0).Shape()
+        shape = BRepAlgoAPI.BRepAlgoAPI_Cut(shape, bore).Shape()
     return pl.cad.Part(shape)

@@ -1,4 +1,4 @@
-"""A tree of solids: a lamp of superquadrics, each deformed before it is joined, and once more together.
+"""A tree of solids: a lamp of superquadrics, each deformed before it is joined.
 
 Barr's deformations are modelling operators like the booleans: the shade is twisted, tapered, hollowed out and pierced,
 the stem twisted like barley sugar. The number counts edges that do not close: there are none.
@@ -13,27 +13,15 @@ import pliant as pl
 
 def main(out: Path, size: tuple[int, int] = (1200, 900)) -> float:
     shapes = pl.shapes
-    lamp = lantern() | stem() | shapes.superquadric((2.6, 2.6, 0.7), (0.6, 1.0), (0, 0, -3.2), name="foot")
-    mesh = lamp.mesh
-    pl.render(
-        mesh,
-        None,
-        out / "solid_tree.png",
-        color=mesh.groups.indices.astype(float),
-        legend=False,
-        view=(0.9, -2.2, 0.6),
-        size=size,
-    )
-    return float(sum(mesh.edge_use))
-
-
-def lantern() -> pl.shapes.Solid:
-    """A square shade, twisted and tapered, hollow, with a row of windows."""
-    whole = hull(2.2, 3.2) - hull(1.9, 2.9)
+    shade = hull(2.2, 3.2) - hull(1.9, 2.9)
     for turn in range(4):
-        window = pl.shapes.superquadric((6, 0.5, 1.4), (0.5, 0.5), name="window")
-        whole = whole - window.turned("z", turn * np.pi / 4)
-    return whole
+        window = shapes.superquadric((6, 0.5, 1.4), (0.5, 0.5), name="window")
+        shade = shade - window.turned("z", turn * np.pi / 4)
+    foot = shapes.superquadric((2.6, 2.6, 0.7), (0.6, 1.0), (0, 0, -3.2), name="foot")
+    mesh = (shade | stem() | foot).mesh
+    color = mesh.groups.indices.astype(float)
+    pl.render(mesh, None, out / "solid_tree.png", color=color, legend=False, view=(0.9, -2.2, 0.6), size=size)
+    return float(sum(mesh.edge_use))
 
 
 def hull(width: float, height: float) -> pl.shapes.Solid:
@@ -43,7 +31,6 @@ def hull(width: float, height: float) -> pl.shapes.Solid:
 
 
 def stem() -> pl.shapes.Solid:
-    """A square rod, twisted, with a ring and a bulb."""
     rod = pl.shapes.superquadric((0.5, 0.5, 2.2), (0.2, 0.4), (0, 0, -2.2), name="stem")
     sugar = rod.deformed(pl.Twist(axis="z", angle=3 * np.pi, bounds=(-3.3, -1.1)), edge=0.04)
     return sugar | pl.shapes.torus(0.4, 0.12, (0, 0, -1.9), name="ring") | pl.shapes.sphere(0.45, name="bulb")
