@@ -34,6 +34,9 @@ ROOMS = {
     "rendering": "Pictures",
     "scene": "Stacks, scenes and time",
     "face": "Faces",
+    "batch": "Batches",
+    "shapes": "Solids",
+    "cad": "Parts from CAD",
 }
 
 
@@ -123,9 +126,21 @@ def docstring(script: Path) -> tuple[str, str, str]:
 
 def public_names() -> list[tuple[str, str]]:
     """(module, name) of everything that ``import pliant`` offers."""
-    tree = ast.parse((ROOT / "src" / "pliant" / "__init__.pyi").read_text(encoding="utf-8"))
+    listed = _imported(ROOT / "src" / "pliant" / "__init__.pyi")
+    rooms = [name for module, name in listed if not module]
+    inside = [pair for room in rooms for pair in _imported(ROOT / "src" / "pliant" / room / "__init__.py")]
+    return list(dict.fromkeys([pair for pair in listed if pair[0]] + inside))
+
+
+def _imported(path: Path) -> list[tuple[str, str]]:
+    """The names that a file hands on, each with its module as seen from pliant; rooms have none."""
+    tree = ast.parse(path.read_text(encoding="utf-8"))
     imports = [node for node in tree.body if isinstance(node, ast.ImportFrom)]
-    return [(node.module or "", alias.asname or alias.name) for node in imports for alias in node.names]
+    return [
+        ((node.module or "").removeprefix("pliant."), alias.asname or alias.name)
+        for node in imports
+        for alias in node.names
+    ]
 
 
 def reference_pages() -> dict[str, str]:
