@@ -1,13 +1,21 @@
 """What tests do in a browser: wait, look at pixels, drag, and read the page's own handle."""
 
-import io
 import time
 from pathlib import Path
 
 import numpy as np
-from PIL import Image
 
-FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"]
+FLAGS = [
+    "--no-sandbox",
+    "--use-gl=angle",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+]
 PICTURES = Path(__file__).parent / "pictures"  # looked at by people; not in the repository
 
 
@@ -45,7 +53,7 @@ class View:
         before = -1
         while before != (now := self.ask("window.pliantStudio.frames")):
             before = now
-            time.sleep(0.12)
+            time.sleep(0.08)
 
     def handles(self):
         """Wait until control points can be taken hold of."""
@@ -79,13 +87,11 @@ class View:
         return np.array(found)
 
     def picture(self, name):
-        """A screenshot, kept for people, as (height, width, 3) pixels."""
+        """A screenshot, kept for people."""
         PICTURES.mkdir(exist_ok=True)
-        data = self.page.screenshot(path=PICTURES / f"{name}.png")
-        return np.asarray(Image.open(io.BytesIO(data)).convert("RGB"))
+        self.page.screenshot(path=PICTURES / f"{name}.png")
 
-    def pixel(self, x, y):
-        """The colour at a place of the page."""
-        clip = {"x": round(x), "y": round(y), "width": 1, "height": 1}
-        data = self.page.screenshot(clip=clip)
-        return np.asarray(Image.open(io.BytesIO(data)).convert("RGB"))[0, 0].astype(int)
+    def pixels(self, x, y, width=1, height=1):
+        """(height, width, 3) colours of a rectangle of the canvas, the first row below."""
+        found = self.ask(f"window.pliantStudio.pixels({x}, {y}, {width}, {height})")
+        return np.array(found).reshape(height, width, 4)[..., :3]

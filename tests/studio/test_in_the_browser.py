@@ -1,8 +1,12 @@
 """The studio in a real browser, against what the library computes."""
 
+import shutil
+from dataclasses import replace
+from pathlib import Path
+
 import numpy as np
 import pytest
-from shapes import moved_scene, round_scene
+from bodies_to_edit import moved_scene, round_scene
 
 import pliant as pl
 
@@ -19,7 +23,6 @@ def test_a_dragged_control_point_moves_the_mesh_as_the_library_does(launched, vi
     page = view(launched(round_scene()))
     page.drawn()
     page.handles()
-    page.picture("lattice")
     revision = page.session.revision
     page.drag(page.control(63), (70, -50), release=False)
     page.until("window.pliantStudio.latencies.length > 0")
@@ -70,7 +73,6 @@ def test_whole_layers_and_rectangles_are_selected(launched, view):
     page.page.keyboard.press("b")
     page.drag((70, 130), (700, 560))
     assert page.ask("window.pliantStudio.selection().length") == 64
-    page.picture("all-selected")
 
 
 def test_soft_selection_mirror_and_axis_lock(launched, view):
@@ -104,7 +106,7 @@ def test_the_gizmo_turns_a_layer_about_its_centre(launched, view):
     revision = page.session.revision
     centers = np.array([page.control(4 * i) for i in range(16)]).mean(axis=0)
     radius = page.ask("window.pliantStudio.gizmoRadius()")
-    page.drag((centers[0] + radius, centers[1]), (-radius * 0.6, -radius * 0.8), steps=8)
+    page.drag((centers[0], centers[1] + radius), (radius * 0.8, -radius * 0.6), steps=8)
     page.committed(revision)
     lattice = page.session.scene.stack["Lattice"].deformer
     before, after = lattice.rest[:, :, 0].reshape(-1, 3), lattice.controls[:, :, 0].reshape(-1, 3)
@@ -149,7 +151,7 @@ def test_a_colour_map_shows_the_legend_s_colours(launched, view):
     from pliant.rendering.palette import SEQUENTIAL, color_table
 
     expected = 255 * color_table(SEQUENTIAL)[-1]
-    assert np.abs(page.pixel(at["x"], at["y"]) - expected).max() < 40
+    assert np.abs(page.pixels(at["x"], at["y"])[0, 0] - expected).max() < 20
 
 
 def test_muting_restores_the_shape_and_solo_silences_others(launched, view):
@@ -183,13 +185,15 @@ def test_layers_are_added_from_the_catalogue_and_edited_by_their_fields(launched
     page.page.keyboard.press("Alt+ArrowDown")
     page.committed(revision + 2)
     assert page.session.scene.stack.names == ("Twist", "Lattice")
-    page.picture("twisted")
 
 
 def test_a_textured_obj_is_dropped_and_shown_with_its_texture(launched, view, tmp_path):
     folder = tmp_path / "obj"
     folder.mkdir()
-    pl.write(round_scene().mesh, folder / "ring.obj")
+    mesh = round_scene().mesh
+    copy = shutil.copy(mesh.material_library["checkers"].texture, folder)
+    library = {"checkers": replace(mesh.material_library["checkers"], texture=Path(copy))}
+    pl.write(mesh.replace(material_library=library), folder / "ring.obj")
     page = view(launched())
     files = sorted(str(each) for each in folder.iterdir())
     assert len(files) == 3  # the mesh, its materials, its texture
@@ -200,7 +204,7 @@ def test_a_textured_obj_is_dropped_and_shown_with_its_texture(launched, view, tm
     page.page.wait_for_timeout(300)
     page.ask("window.pliantStudio.mode('look')")
     page.settled()
-    pixels = page.picture("textured").reshape(-1, 3).astype(int)
+    pixels = page.pixels(60, 60, 600, 500).reshape(-1, 3)
     blue = (pixels[:, 2] - pixels[:, 0] > 50).mean()
     assert blue > 0.02  # half of the checkerboard
     assert page.session.scene.mesh.uvs is not None
@@ -232,7 +236,6 @@ def test_an_ffd_file_is_imported_and_exported(launched, view, tmp_path):
     with page.page.expect_download() as download:
         page.page.get_by_role("button", name="Download").click()
     page.until("document.querySelector('.report h3') !== null")
-    page.picture("export")
     download.value.save_as(tmp_path / "again.FFD")
     again = pl.read_transform(tmp_path / "again.FFD")
     np.testing.assert_allclose(again(scene.mesh).points, expected, atol=1e-5)
@@ -242,7 +245,7 @@ def test_field_lines_arrows_and_a_fold_are_shown(launched, view):
     scene = moved_scene()
     lattice = scene.stack["Lattice"].deformer
     controls = np.array(lattice.rest)
-    controls[1, 1, 1] += [2.2, 0, 0]
+    controls[1, 1, 1] += [5, 0, 0]
     page = view(launched(scene.replace(stack=scene.stack.replace("Lattice", deformer=lattice.moved(controls)))))
     page.drawn()
     page.page.get_by_label("Grid lines").check()
@@ -300,7 +303,6 @@ def test_unsaved_work_is_recovered_after_a_crash(launched, view):
     page.page.close()
     again = view(launched())
     again.until("document.querySelector('.recovery button') !== null")
-    again.picture("recovery")
     again.page.locator(".recovery button").first.click()
     again.drawn()
     np.testing.assert_allclose(again.positions(len(expected)), expected, atol=1e-5)
@@ -311,13 +313,13 @@ def test_before_and_after_beside_each_other(launched, view):
     page.drawn()
     page.ask("window.pliantStudio.mode('look')")
     page.settled()
-    whole = page.picture("after")
+    whole = page.pixels(60, 100, 620, 400)
     page.page.get_by_role("button", name="Before / after").click()
     page.until("!document.querySelector('.divider').hidden")
     page.settled()
-    halves = page.picture("before-after")
-    assert (whole[:, 100:380] != halves[:, 100:380]).any()
-    np.testing.assert_array_equal(whole[150:500, 520:640], halves[150:500, 520:640])
+    halves = page.pixels(60, 100, 620, 400)
+    assert (whole[:, :300] != halves[:, :300]).any()
+    np.testing.assert_array_equal(whole[:, 320:], halves[:, 320:])
 
 
 def test_what_cannot_be_read_is_told_and_nothing_is_lost(launched, view, tmp_path):
@@ -352,8 +354,6 @@ def test_the_help_sheet_and_the_view_by_keys(launched, view):
     page.page.keyboard.press("w")
     page.page.keyboard.press("p")
     page.settled()
-    page.picture("wireframe-parallel")
     page.page.keyboard.press("?")
     page.page.get_by_role("dialog", name="Keyboard and mouse").wait_for()
-    page.picture("help")
     page.page.keyboard.press("Escape")
