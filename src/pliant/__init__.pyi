@@ -76,6 +76,8 @@ from .scene.template_library import template as template
 from .scene.template_library import templates as templates
 from .shape.bspline_kernel import BSplineKernel as BSplineKernel
 from .shape.closest_point_chain import ClosestPointDensity as ClosestPointDensity
+from .shape.densities import CachedDensity as CachedDensity
+from .shape.densities import ProductDensity as ProductDensity
 from .shape.diagnostics import effective_sample_size as effective_sample_size
 from .shape.diagnostics import r_hat as r_hat
 from .shape.gaussian_process import GaussianProcess as GaussianProcess

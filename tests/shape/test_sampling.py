@@ -6,7 +6,10 @@ import pytest
 from pliant.errors import InvalidParameter, NonFiniteResult
 from pliant.shape.closest_point_chain import ClosestPointDensity
 from pliant.shape.correspondence import Target
+from pliant.shape.densities import CachedDensity, ProductDensity
 from pliant.shape.diagnostics import effective_sample_size, r_hat
+from pliant.shape.kernels import GaussianKernel
+from pliant.shape.model import ShapeModel
 from pliant.shape.sampling import Mixture, NormalProposal, RandomWalk, metropolis_hastings
 
 COVARIANCE = np.array([[1.0, 0.5], [0.5, 0.7]])
@@ -89,6 +92,66 @@ def test_closest_points_lead_to_the_target(soft, fine):
     surface = Target(target, np.pi)
     before, after = (np.linalg.norm(surface.closest(x) - x, axis=1).mean() for x in (soft.mean, fitted))
     assert after < 0.7 * before  # within the noise, which is half of what the mean misses
+
+
+def test_chains_from_far_apart_converge_on_the_target(coarse, fine):
+    model = ShapeModel.from_kernel(coarse, GaussianKernel(3.0, 0.12), rank=12)
+    given = 0.8 * np.random.default_rng(1).normal(size=model.count)
+    density = ClosestPointDensity(model, model.deformer(given)(fine), noise=0.1)
+    steps = Mixture([density.proposal(0.5), density.proposal(0.1), RandomWalk(0.02)], [0.6, 0.3, 0.1])
+    starts = np.random.default_rng(2).normal(size=(3, model.count))
+    chains = metropolis_hastings(density, steps, starts, 700, seed=0)
+    late = chains.samples[:, 200:]
+    assert r_hat(late).max() < 1.1
+    assert effective_sample_size(late).min() > 60
+    assert (chains.acceptance > 0.5).all()
+    assert chains.log_densities[:, 200:].min() > density(given) - 2 * model.count
+
+
+def test_closest_point_proposals_keep_the_density(soft, fine):
+    model = soft.truncated(1)
+    density = ClosestPointDensity(model, soft.deformer(np.ones(soft.count))(fine), noise=0.4, points=40)
+    axis = np.linspace(-3.5, 3.5, 23)
+    grid = np.stack(np.meshgrid(axis, axis, axis, indexing="ij"), axis=-1).reshape(-1, 3)
+    weight = np.exp([density(each) for each in grid])
+    expected = weight @ grid / weight.sum()
+    spread = np.sqrt(weight @ (grid - expected) ** 2 / weight.sum())
+    chains = metropolis_hastings(density, density.proposal(0.7), np.zeros((2, 3)), 2500, seed=0)
+    error = spread / np.sqrt(effective_sample_size(chains.samples))
+    assert (np.abs(chains.samples.mean(axis=(0, 1)) - expected) < 4.5 * error).all()
+    np.testing.assert_allclose(chains.samples.std(axis=(0, 1)), spread, rtol=0.1)
+
+
+def test_products_add_logarithms_and_stop_where_nothing_is():
+    asked = []
+
+    def empty(x):
+        asked.append("empty")
+        return -np.inf
+
+    def never(x):
+        asked.append("never")
+        return 0.0
+
+    assert ProductDensity(normal, normal)(MEAN + 1) == 2 * normal(MEAN + 1)
+    assert ProductDensity(empty, never)(MEAN) == -np.inf
+    assert asked == ["empty"]
+    with pytest.raises(InvalidParameter, match="at least one"):
+        ProductDensity()
+
+
+def test_cached_densities_are_asked_once_a_state():
+    asked = []
+
+    def counted(x):
+        asked.append(x)
+        return normal(x)
+
+    cached = CachedDensity(counted)
+    states = np.random.default_rng(0).normal(size=(3, 2))
+    values = [cached(each) for each in (*states, *states)]
+    assert values == [normal(each) for each in (*states, *states)]
+    assert len(asked) == 3
 
 
 def test_what_cannot_be_sampled_is_refused():

@@ -1,6 +1,8 @@
-"""The kernel for closest points on triangles (Ericson 2005, section 5.1.5)."""
+"""The kernel for closest points on triangles (Ericson 2005, section 5.1.5), in a tree of boxes."""
 
 from __future__ import annotations
+
+import numpy as np
 
 from pliant.numerics.compiling import inlined, kernel
 
@@ -38,20 +40,60 @@ def _weights(corners, t, x, y, z):
     return vb * scale, vc * scale
 
 
+@inlined
+def _square(corners, t, v, w, x, y, z):
+    """The squared distance from a point to that with weights v, w on a triangle."""
+    u = 1.0 - v - w
+    dx = x - u * corners[t, 0, 0] - v * corners[t, 1, 0] - w * corners[t, 2, 0]
+    dy = y - u * corners[t, 0, 1] - v * corners[t, 1, 1] - w * corners[t, 2, 1]
+    dz = z - u * corners[t, 0, 2] - v * corners[t, 1, 2] - w * corners[t, 2, 2]
+    return dx * dx + dy * dy + dz * dz
+
+
+@inlined
+def _outside(boxes, node, x, y, z):
+    """The squared distance from a point to a box."""
+    dx = max(boxes[node, 0] - x, x - boxes[node, 3], 0.0)
+    dy = max(boxes[node, 1] - y, y - boxes[node, 4], 0.0)
+    dz = max(boxes[node, 2] - z, z - boxes[node, 5], 0.0)
+    return dx * dx + dy * dy + dz * dz
+
+
 @kernel
-def nearest_of(points, start, stop, corners, candidates, chosen, weights, distance):
-    """For points [start, stop) of (m, 3) the nearest of their (m, k) candidate triangles (t, 3, 3)."""
+def nearest_in(points, start, stop, corners, bounds, boxes, chosen, weights, distance):
+    """For points [start, stop) of (m, 3) the nearest of the triangles (t, 3, 3), and its squared distance.
+
+    ``boxes`` (2 l, 6) is a binary tree, node 1 its root, 2 i and 2 i + 1 below i; leaf i < l, node l + i, holds the
+    triangles from bounds[i] to bounds[i + 1]. Each point begins with the triangle of the one before: near, as a rule.
+    """
+    leaves = len(bounds) - 1
+    nodes, squares = np.empty(64, np.int64), np.empty(64)
+    best = 0
     for i in range(start, stop):
         x, y, z = points[i, 0], points[i, 1], points[i, 2]
-        distance[i] = 1e300
-        for j in range(candidates.shape[1]):
-            t = candidates[i, j]
-            v, w = _weights(corners, t, x, y, z)
-            u = 1.0 - v - w
-            dx = x - u * corners[t, 0, 0] - v * corners[t, 1, 0] - w * corners[t, 2, 0]
-            dy = y - u * corners[t, 0, 1] - v * corners[t, 1, 1] - w * corners[t, 2, 1]
-            dz = z - u * corners[t, 0, 2] - v * corners[t, 1, 2] - w * corners[t, 2, 2]
-            d = dx * dx + dy * dy + dz * dz
-            if d < distance[i]:
-                distance[i], chosen[i] = d, t
-                weights[i, 0], weights[i, 1], weights[i, 2] = u, v, w
+        best_v, best_w = _weights(corners, best, x, y, z)
+        least = _square(corners, best, best_v, best_w, x, y, z)
+        nodes[0], squares[0], waiting = 1, 0.0, 1
+        while waiting > 0:
+            waiting -= 1
+            node = nodes[waiting]
+            if squares[waiting] >= least:
+                continue
+            while node < leaves:
+                left, right = _outside(boxes, 2 * node, x, y, z), _outside(boxes, 2 * node + 1, x, y, z)
+                near = 2 * node if left <= right else 2 * node + 1
+                if max(left, right) < least:
+                    nodes[waiting], squares[waiting] = 4 * node + 1 - near, max(left, right)
+                    waiting += 1
+                node = near
+                if min(left, right) >= least:
+                    break
+            if node < leaves or _outside(boxes, node, x, y, z) >= least:
+                continue
+            for t in range(bounds[node - leaves], bounds[node - leaves + 1]):
+                v, w = _weights(corners, t, x, y, z)
+                d = _square(corners, t, v, w, x, y, z)
+                if d < least:
+                    least, best, best_v, best_w = d, t, v, w
+        distance[i], chosen[i] = least, best
+        weights[i, 0], weights[i, 1], weights[i, 2] = 1.0 - best_v - best_w, best_v, best_w

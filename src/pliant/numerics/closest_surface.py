@@ -1,4 +1,4 @@
-"""Closest points on triangles."""
+"""Closest points on triangles: exact, by a tree of boxes."""
 
 from __future__ import annotations
 
@@ -12,7 +12,7 @@ from pliant.numerics.chunks import for_chunks
 Floats = NDArray[np.float64]
 Integers = NDArray[np.integer]
 
-_FIRST = 12  # triangles looked at first, by their centres
+_LEAF = 4  # triangles, at least, in a box that is not divided
 
 
 @dataclass(frozen=True)
@@ -36,45 +36,39 @@ class TriangleSearch:
     def __init__(self, points: Floats, triangles: Integers) -> None:
         from scipy.spatial import cKDTree
 
-        self._corners = np.ascontiguousarray(points[triangles])
-        centers = self._corners.mean(axis=1)
-        self._reach = float(np.sqrt(((self._corners - centers[:, None]) ** 2).sum(axis=2).max()))
-        self._tree = cKDTree(centers)
+        corners = points[triangles]
+        self._order = cKDTree(corners.mean(axis=1), leafsize=_LEAF).indices  # neighbours in space lie together
+        self._corners = np.ascontiguousarray(corners[self._order])
+        leaves = 1 << max(0, (len(corners) // _LEAF).bit_length() - 1)
+        self._bounds = np.arange(leaves + 1) * len(corners) // leaves
+        self._boxes = _boxes(self._corners, self._bounds)
 
-    def query(self, points: Floats, *, exact: bool = True) -> Closest:
-        """Closest points.
+    def query(self, points: Floats) -> Closest:
+        """The closest points to (m, 3) points."""
+        from pliant.numerics.closest_kernels import nearest_in
 
-        Parameters
-        ----------
-        points
-            (m, 3).
-        exact
-            Look on until no triangle farther off can be closer; else the triangles with the 12 nearest centres must
-            do, which is enough where triangles are much of one size.
-        """
-        found = Closest(np.empty((len(points), 3)), np.empty(len(points), np.int64), np.empty((len(points), 3)))
-        left, count = np.arange(len(points)), min(_FIRST, len(self._corners))
-        while len(left):
-            far, candidates = self._tree.query(points[left], k=count)
-            far, candidates = far.reshape(len(left), -1), candidates.reshape(len(left), -1)
-            distance = self._nearest(points[left], candidates, left, found)
-            if not exact or count == len(self._corners):
-                break
-            left = left[far[:, -1] < distance + self._reach]
-            count = min(4 * count, len(self._corners))
-        return found
-
-    def _nearest(self, points: Floats, candidates: NDArray[np.int64], rows: Integers, found: Closest) -> Floats:
-        """Fill in some rows; their distances."""
-        from pliant.numerics.closest_kernels import nearest_of
-
-        chosen, weights, distance = np.empty(len(points), np.int64), np.empty((len(points), 3)), np.empty(len(points))
-        queries, listed = np.ascontiguousarray(points), np.ascontiguousarray(candidates)
+        queries, count = np.ascontiguousarray(points), len(points)
+        chosen, weights, distance = np.empty(count, np.int64), np.empty((count, 3)), np.empty(count)
         for_chunks(
-            lambda start, stop: nearest_of(queries, start, stop, self._corners, listed, chosen, weights, distance),
-            len(points),
-            4096,
+            lambda start, stop: nearest_in(
+                queries, start, stop, self._corners, self._bounds, self._boxes, chosen, weights, distance
+            ),
+            count,
+            1024,
         )
-        found.triangles[rows], found.weights[rows] = chosen, weights
-        found.points[rows] = np.einsum("mc,mcd->md", weights, self._corners[chosen])
-        return np.asarray(np.sqrt(distance))
+        corners = self._corners[chosen]
+        places = weights[:, :1] * corners[:, 0] + weights[:, 1:2] * corners[:, 1] + weights[:, 2:] * corners[:, 2]
+        return Closest(places, np.asarray(self._order[chosen], np.int64), weights)
+
+
+def _boxes(corners: Floats, bounds: Integers) -> Floats:
+    """(2 l, 6) the least and the greatest coordinates in each node of a complete binary tree; node 0 is not used."""
+    leaves = len(bounds) - 1
+    boxes = np.zeros((2 * leaves, 6))
+    boxes[leaves:, :3] = np.minimum.reduceat(corners.min(axis=1), bounds[:-1])
+    boxes[leaves:, 3:] = np.maximum.reduceat(corners.max(axis=1), bounds[:-1])
+    while leaves > 1:
+        below, leaves = boxes[leaves : 2 * leaves], leaves // 2
+        boxes[leaves : 2 * leaves, :3] = np.minimum(below[::2, :3], below[1::2, :3])
+        boxes[leaves : 2 * leaves, 3:] = np.maximum(below[::2, 3:], below[1::2, 3:])
+    return boxes

@@ -19,7 +19,7 @@ from pliant.numerics.one_thread import one_blas_thread
 Floats = NDArray[np.float64]
 Integers = NDArray[np.integer]
 
-_BLOCK = 262_144  # results of many shapes that are made at once
+_BLOCK = 262_144  # numbers of one coordinate that are made at once
 _FEW = 4  # shapes that are made one by one
 
 
@@ -45,8 +45,10 @@ class Basis(ABC):
         return (3 if self.scalar else 1) * self.rank
 
     @abstractmethod
-    def apply(self, coefficients: Floats, dtype: DTypeLike = np.float64) -> NDArray[np.floating]:
-        """(..., n, 3) displacements for (..., k) coefficients."""
+    def apply(
+        self, coefficients: Floats, dtype: DTypeLike = np.float64, base: Floats | None = None
+    ) -> NDArray[np.floating]:
+        """(..., n, 3) displacements for (..., k) coefficients, on top of (n, 3) points if these are given."""
 
     @abstractmethod
     def transpose(self, values: Floats) -> Floats:
@@ -95,14 +97,19 @@ class ScalarBasis(Basis):
         """n, the number of points."""
         return len(self.factors)
 
-    def apply(self, coefficients: Floats, dtype: DTypeLike = np.float64) -> NDArray[np.floating]:
+    def apply(
+        self, coefficients: Floats, dtype: DTypeLike = np.float64, base: Floats | None = None
+    ) -> NDArray[np.floating]:
         shape = (*coefficients.shape[:-1], self.size, 3)
         stacked = coefficients.reshape(math.prod(shape[:-2]), self.rank, 3).astype(dtype, copy=False)
-        if len(stacked) < _FEW:
-            factors = self.factors.astype(dtype, copy=False)
-            return np.asarray([factors @ each for each in stacked], dtype).reshape(shape)
-        flat = np.ascontiguousarray(stacked.transpose(1, 0, 2)).reshape(self.rank, -1)
-        return many(self.factors, flat, len(stacked), dtype).reshape(shape)
+        if len(stacked) >= _FEW:
+            return many(self.factors, stacked, base).reshape(shape)
+        factors, out = self.factors.astype(dtype, copy=False), np.empty((len(stacked), self.size, 3), dtype)
+        for each, result in zip(stacked, out, strict=True):
+            np.matmul(factors, each, out=result)
+            if base is not None:
+                result += base
+        return out.reshape(shape)
 
     def transpose(self, values: Floats) -> Floats:
         return np.asarray((self.factors.T @ values).reshape(-1))
@@ -146,10 +153,15 @@ class FullBasis(Basis):
     def _flat(self) -> Floats:
         return self.fields.reshape(3 * self.size, self.rank)
 
-    def apply(self, coefficients: Floats, dtype: DTypeLike = np.float64) -> NDArray[np.floating]:
+    def apply(
+        self, coefficients: Floats, dtype: DTypeLike = np.float64, base: Floats | None = None
+    ) -> NDArray[np.floating]:
         shape = (*coefficients.shape[:-1], self.size, 3)
         stacked = coefficients.reshape(math.prod(shape[:-2]), self.count).astype(dtype, copy=False)
-        return np.asarray(stacked @ self._flat.T.astype(dtype, copy=False)).reshape(shape)
+        result = np.asarray(stacked @ self._flat.T.astype(dtype, copy=False)).reshape(shape)
+        if base is not None:
+            result += base.astype(dtype, copy=False)
+        return result
 
     def transpose(self, values: Floats) -> Floats:
         return np.asarray(self._flat.T @ values.reshape(-1))
@@ -166,16 +178,23 @@ class FullBasis(Basis):
         return self.fields
 
 
-def many(factors: Floats, flat: NDArray[np.floating], count: int, dtype: DTypeLike) -> NDArray[np.floating]:
-    """(count, n, 3) = factors (n, r) times flat (r, count 3), in the order of shapes, not of points."""
+def many(factors: Floats, coefficients: NDArray[np.floating], base: Floats | None) -> NDArray[np.floating]:
+    """(s, n, 3) shapes of (s, r, 3) coefficients: one product a coordinate for some points of all shapes at a time."""
+    count, dtype = len(coefficients), coefficients.dtype
+    axes = [np.ascontiguousarray(coefficients[:, :, axis]) for axis in range(3)]
     out = np.empty((count, len(factors), 3), dtype)
 
     def work(first: int, stop: int) -> None:
-        part = factors[first:stop].astype(dtype, copy=False) @ flat
-        out[:, first:stop] = part.reshape(stop - first, count, 3).transpose(1, 0, 2)
+        rows = np.ascontiguousarray(factors[first:stop].T, dtype)
+        part = np.empty((count, stop - first), dtype)
+        for axis in range(3):
+            np.matmul(axes[axis], rows, out=part)
+            if base is not None:
+                part += base[first:stop, axis].astype(dtype, copy=False)
+            out[:, first:stop, axis] = part
 
     with one_blas_thread():
-        for_chunks(work, len(factors), max(16, _BLOCK // (3 * count)))
+        for_chunks(work, len(factors), max(16, _BLOCK // count))
     return out
 
 

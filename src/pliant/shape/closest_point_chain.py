@@ -1,16 +1,21 @@
 """What a target says of a model's coefficients: a log density of closest points, and proposals towards them.
 
 The proposal is the posterior of the model given the closest points of the present shape (Madsen et al. 2020, sec. 4).
-Both directions of its transition density are those of this construction: chains converge to the density asked for.
+Points slide along the target: only distances off it count, as in the density. A step goes part of the way to that
+posterior and spreads as much as keeps the posterior itself unchanged (preconditioned Crank-Nicolson; Cotter et al.
+2013): were the closest points to stay, each step would be accepted. Both directions of its transition density are
+those of this construction, so that chains converge to the density asked for.
 """
 
 from __future__ import annotations
 
 import numpy as np
 
+from pliant.errors import InvalidParameter
 from pliant.mesh import PolygonMesh
 from pliant.shape.basis import Floats
 from pliant.shape.correspondence import Target
+from pliant.shape.densities import remembering
 from pliant.shape.kernels import positive
 from pliant.shape.linear_model import LinearModel
 from pliant.shape.sampling import NormalProposal
@@ -35,36 +40,52 @@ class ClosestPointDensity:
         self._noise = positive("the noise", noise)
         self._target = Target(target, np.pi)
         chosen = np.arange(0, len(model.mean), -(-len(model.mean) // max(1, points)))
-        self._mean, self._rows = model.mean[chosen], model.basis.rows(chosen)
-        columns = self._rows.columns().reshape(3 * len(chosen), -1)
-        self._columns = np.ascontiguousarray(columns)
+        self._mean = model.mean[chosen]
+        self._columns = np.ascontiguousarray(model.basis.rows(chosen).columns())
+        self._found = remembering(self._look)
 
     def __call__(self, coefficients: Floats) -> float:
-        apart = self._goals(coefficients) - (self._columns @ coefficients).reshape(-1, 3)
+        apart, _ = self._found(coefficients)
         return -0.5 * float((apart**2).sum() / self._noise**2 + coefficients @ coefficients)
 
-    def proposal(self, step: float = 0.5) -> NormalProposal:
+    def proposal(self, step: float = 0.5, slide: float = 100.0) -> NormalProposal:
         """Steps from the present coefficients part of the way to the posterior of the closest points.
 
         Parameters
         ----------
         step
-            Which part; the spread is the posterior's, as much smaller.
+            Which part, up to 1: all the way.
+        slide
+            How many times farther a point may move along the target than off it.
+
+        Raises
+        ------
+        InvalidParameter
+            A step outside (0, 1], or a slide below one.
         """
         share = positive("the step of a proposal", step)
-        size = self._columns.shape[1]
-        lower = np.linalg.cholesky(np.eye(size) + self._columns.T @ self._columns / self._noise**2)
-        covariance = np.linalg.inv(lower @ lower.T)
-        factor = np.asarray(np.linalg.cholesky((covariance + covariance.T) / 2), np.float64) * np.sqrt(share)
-        gain = covariance @ self._columns.T / self._noise**2
+        if share > 1 or not slide >= 1:
+            raise InvalidParameter(f"a proposal steps by 1 at most, and slides by 1 at least, not {step} and {slide}")
+        spread = np.sqrt(share * (2 - share))
+        across = 1 / slide
 
         def distribution(state: Floats) -> tuple[Floats, Floats]:
-            mean = gain @ self._goals(state).reshape(-1)
-            return state + share * (mean - state), factor
+            apart, normals = self._found(state)
+            if normals is None:
+                rows, goal = self._columns.reshape(apart.size, -1), apart.reshape(-1)
+            else:
+                off = np.einsum("mi,mij->mj", normals, self._columns)
+                rows = np.vstack([off, across * self._columns.reshape(apart.size, -1)])
+                goal = np.concatenate([np.einsum("mi,mi->m", normals, apart), across * apart.reshape(-1)])
+            rows, goal = rows / self._noise, goal / self._noise
+            covariance = np.linalg.inv(np.eye(rows.shape[1]) + rows.T @ rows)
+            factor = spread * np.asarray(np.linalg.cholesky((covariance + covariance.T) / 2), np.float64)
+            return state + share * (covariance @ (rows.T @ goal - state)), factor
 
-        return NormalProposal(distribution)
+        return NormalProposal(remembering(distribution))
 
-    def _goals(self, coefficients: Floats) -> Floats:
-        """(m, 3) the closest points, less the model's mean."""
-        points = self._mean + (self._columns @ coefficients).reshape(-1, 3)
-        return self._target.closest(points) - self._mean
+    def _look(self, coefficients: Floats) -> tuple[Floats, Floats | None]:
+        """(m, 3) from the shape's points to the closest ones, and (m, 3) the normals there."""
+        points = self._mean + self._columns @ coefficients
+        places, normals, _ = self._target.correspondences(points, None)
+        return places - points, normals

@@ -33,9 +33,9 @@ class Target:
             raise InvalidTarget("the target has no points: there is nothing to fit to")
         self.mesh, self._least = mesh, float(np.cos(angle))
 
-    def closest(self, points: Floats, *, exact: bool = False) -> Floats:
+    def closest(self, points: Floats) -> Floats:
         """(m, 3) the closest points."""
-        return self._query(points, exact=exact)[0]
+        return self._query(points)[0]
 
     def correspondences(self, points: Floats, normals: Floats | None) -> tuple[Floats, Floats | None, Booleans]:
         """(m, 3) the closest points, (m, 3) the normals there, and (m,) whether they can be believed.
@@ -57,9 +57,9 @@ class Target:
             good &= np.einsum("mi,mi->m", normals, smooth) >= self._least * length - 1e-12
         return places, there, good
 
-    def _query(self, points: Floats, *, exact: bool = False) -> tuple[Floats, Closest | None]:
+    def _query(self, points: Floats) -> tuple[Floats, Closest | None]:
         if len(self.mesh.triangles):
-            found = self._search.query(points, exact=exact)
+            found = self._search.query(points)
             return found.points, found
         return self.mesh.points[self._tree.query(points)[1]], None
 

@@ -70,14 +70,12 @@ class LinearModel:
         """
         given = np.asarray(coefficients, np.float64)
         checked = checked_controls(given, (*given.shape[:-1], self.count))
-        return np.asarray(self.mean + self.basis.apply(checked), np.float64)
+        return np.asarray(self.basis.apply(checked, base=self.mean), np.float64)
 
     def sample(self, count: int, *, seed: int | None = None, dtype: DTypeLike = np.float64) -> NDArray[np.floating]:
         """(count, n, 3) random shapes; a seed makes them repeatable, float32 makes them in half the time."""
         normal = np.random.default_rng(seed).standard_normal((count, self.count))
-        shapes = self.basis.apply(normal, dtype)
-        shapes += self.mean.astype(dtype)
-        return shapes
+        return self.basis.apply(normal, dtype, self.mean)
 
     def mesh(self, coefficients: ArrayLike | None = None) -> PolygonMesh:
         """The mesh of (k,) coefficients; None = of the mean."""

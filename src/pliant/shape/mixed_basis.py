@@ -27,8 +27,10 @@ class MixedBasis(Basis):
         """n, the number of points."""
         return self.base.size
 
-    def apply(self, coefficients: Floats, dtype: DTypeLike = np.float64) -> NDArray[np.floating]:
-        return self.base.apply(self.mixed(coefficients), dtype)
+    def apply(
+        self, coefficients: Floats, dtype: DTypeLike = np.float64, base: Floats | None = None
+    ) -> NDArray[np.floating]:
+        return self.base.apply(self.mixed(coefficients), dtype, base)
 
     def mixed(self, coefficients: Floats) -> Floats:
         """(..., k) coefficients of the other basis."""

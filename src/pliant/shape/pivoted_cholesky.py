@@ -10,11 +10,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pliant.errors import InvalidParameter
+from pliant.numerics.chunks import for_chunks
+from pliant.numerics.one_thread import one_blas_thread
 from pliant.shape.basis import Basis, FullBasis, ScalarBasis
 from pliant.shape.kernels import Floats, Kernel
 from pliant.shape.low_rank import NEGLIGIBLE, LowRank, checked_rank, warn_of_little
 
-_CANDIDATES, _BLOCK = 256, 16  # pivots are chosen among so many points, and so many at once
+_CANDIDATES, _BLOCK = 384, 32  # pivots are chosen among so many points, and so many at once
+_LONG = 16_384  # unknowns of one product of rows
+_CHUNK = 2048  # unknowns whose covariances are made, reduced and scaled while they are in cache
 
 
 def pivoted_cholesky(
@@ -45,6 +49,25 @@ def pivoted_cholesky(
     PliantWarning
         The rank holds little of the variance; how much is said.
     """
+    with one_blas_thread():
+        rows, pivots, kept = _pivoted(kernel, points, rank, tolerance, absolute)
+        values, turn = np.linalg.eigh(_gram(rows))
+        turn = turn[:, ::-1]
+        mixed, factors = _triangular(rows[:, pivots], turn, upper=True), _turned(rows, turn)
+    deviations = np.sqrt(np.maximum(values[::-1], NEGLIGIBLE**2 * values[-1]))
+    warn_of_little(kept, len(pivots))
+    if kernel.scalar:
+        return LowRank(kernel, points[pivots], mixed, deviations, "discrete", kept), ScalarBasis(factors, deviations)
+    weights = np.zeros((3 * len(pivots), len(pivots)))
+    weights[3 * np.arange(len(pivots)) + pivots % 3] = mixed
+    basis = FullBasis(factors.reshape(len(points), 3, -1), deviations)
+    return LowRank(kernel, points[pivots // 3], weights, deviations, "discrete", kept), basis
+
+
+def _pivoted(
+    kernel: Kernel, points: Floats, rank: int | None, tolerance: float, absolute: float
+) -> tuple[Floats, NDArray[np.int64], float]:
+    """The rows (r, u) of the factor, their pivots (r,), and the part of the variance that they have."""
     residual = _variances(kernel, points)
     most = checked_rank(len(residual), rank, tolerance, absolute)
     total, floor = residual.sum(), max(NEGLIGIBLE * residual.max(), absolute**2)
@@ -53,30 +76,19 @@ def pivoted_cholesky(
     while len(pivots) < most and residual.sum() > tolerance * total and residual.max() > floor:
         done = rows[: len(pivots)]
         candidates = _candidates(residual, random)
-        among = _covariances(kernel, points, candidates, candidates) - done[:, candidates].T @ done[:, candidates]
-        new = candidates[_greedy(among, min(_BLOCK, most - len(pivots)), floor)]
-        fresh = _covariances(kernel, points, new, None) - done[:, new].T @ done
-        fresh = _triangular(np.asarray(np.linalg.cholesky(fresh[:, new])), fresh)
-        enough = 1 + int(np.searchsorted(np.cumsum((fresh**2).sum(axis=1)), residual.sum() - tolerance * total))
+        few = done[:, candidates]
+        among = _between(kernel, points, candidates) - few.T @ few
+        at = _greedy(among, min(_BLOCK, most - len(pivots)), floor)
+        new = candidates[at]
+        fresh = rows[len(pivots) : len(pivots) + len(new)]
+        _reduce(kernel, points, new, done, np.asarray(np.linalg.cholesky(among[np.ix_(at, at)])), fresh)
+        held = np.einsum("rn,rn->r", fresh, fresh)
+        enough = 1 + int(np.searchsorted(np.cumsum(held), residual.sum() - tolerance * total))
         fresh, new = fresh[:enough], new[:enough]
-        rows[len(pivots) : len(pivots) + len(new)] = fresh
         residual = np.maximum(residual - np.einsum("rn,rn->n", fresh, fresh), 0.0)
         residual[new] = 0.0
         pivots = np.concatenate([pivots, new])
-    rows = rows[: len(pivots)]
-    values, turn = np.linalg.eigh(rows @ rows.T)
-    deviations = np.sqrt(np.maximum(values[::-1], NEGLIGIBLE**2 * values[-1]))
-    turn = turn[:, ::-1]
-    kept = 1 - float(residual.sum() / total)
-    warn_of_little(kept, len(pivots))
-    mixed = _triangular(rows[:, pivots], turn, upper=True)
-    factors = rows.T @ turn
-    if kernel.scalar:
-        return LowRank(kernel, points[pivots], mixed, deviations, "discrete", kept), ScalarBasis(factors, deviations)
-    weights = np.zeros((3 * len(pivots), len(pivots)))
-    weights[3 * np.arange(len(pivots)) + pivots % 3] = mixed
-    basis = FullBasis(factors.reshape(len(points), 3, -1), deviations)
-    return LowRank(kernel, points[pivots // 3], weights, deviations, "discrete", kept), basis
+    return rows[: len(pivots)], pivots, 1 - float(residual.sum() / total)
 
 
 def _variances(kernel: Kernel, points: Floats) -> Floats:
@@ -113,15 +125,58 @@ def _greedy(among: Floats, count: int, floor: float) -> NDArray[np.int64]:
     return np.asarray(chosen, np.int64)
 
 
-def _covariances(kernel: Kernel, points: Floats, one: NDArray[np.int64], two: NDArray[np.int64] | None) -> Floats:
-    """(m, n) between unknowns: points of a scalar kernel, coordinates of points of another; two = None: all."""
+def _reduce(kernel: Kernel, points: Floats, new: NDArray[np.int64], done: Floats, lower: Floats, fresh: Floats) -> None:
+    """Fill in the rows (m, u) of new pivots, orthogonal to those that are done; ``lower`` is their own factor."""
+    inverse = _triangular(lower, np.eye(len(lower)))
+    each, own = (1 if kernel.scalar else 3), inverse @ done[:, new].T
+
+    def work(first: int, stop: int) -> None:
+        part = slice(each * first, each * stop)
+        np.matmul(inverse, _columns(kernel, points[first:stop], points, new), out=fresh[:, part])
+        if len(done):
+            fresh[:, part] -= own @ done[:, part]
+
+    for_chunks(work, len(points), _CHUNK)
+
+
+def _gram(rows: Floats) -> Floats:
+    """(r, r) the inner products of rows."""
+    starts = range(0, rows.shape[1], _LONG)
+    parts = np.zeros((len(starts), len(rows), len(rows)))
+
+    def work(first: int, stop: int) -> None:
+        np.matmul(rows[:, first:stop], rows[:, first:stop].T, out=parts[first // _LONG])
+
+    for_chunks(work, rows.shape[1], _LONG)
+    return np.asarray(parts.sum(axis=0))
+
+
+def _turned(rows: Floats, turn: Floats) -> Floats:
+    """(u, r) the columns of rows (r, u) after a rotation."""
+    out = np.empty(rows.shape[::-1])
+
+    def work(first: int, stop: int) -> None:
+        np.matmul(rows[:, first:stop].T, turn, out=out[first:stop])
+
+    for_chunks(work, len(out), _CHUNK)
+    return out
+
+
+def _between(kernel: Kernel, points: Floats, chosen: NDArray[np.int64]) -> Floats:
+    """(m, m) covariances between unknowns: points of a scalar kernel, coordinates of points of another."""
     if kernel.scalar:
-        return kernel(points if two is None else points[two], points[one]).T
-    everything = np.arange(3 * len(points)) if two is None else two
-    place, back = np.unique(everything // 3, return_inverse=True)
-    full = kernel(points[place], points[one // 3])
-    picked = full[:, :, np.arange(len(one)), one % 3]
-    return np.asarray(picked[back, everything % 3].T)
+        return kernel(points[chosen], points[chosen])
+    place, back = np.unique(chosen // 3, return_inverse=True)
+    full = _columns(kernel, points[place], points, chosen)
+    return full[:, 3 * back + chosen % 3]
+
+
+def _columns(kernel: Kernel, some: Floats, points: Floats, pivots: NDArray[np.int64]) -> Floats:
+    """(m, u) covariances of pivots with the unknowns of some points."""
+    if kernel.scalar:
+        return kernel.block(some, points[pivots]).T
+    full = kernel.block(some, points[pivots // 3])
+    return np.asarray(full[:, :, np.arange(len(pivots)), pivots % 3].reshape(-1, len(pivots)).T)
 
 
 def _triangular(matrix: Floats, values: Floats, *, upper: bool = False) -> Floats:

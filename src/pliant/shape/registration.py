@@ -151,7 +151,7 @@ class _Rounds:
     def result(self, status: Literal["converged", "stopped"], count: int) -> Fit:
         points = moved(self._matrix, self._shape)
         some = points[self._chosen]
-        distance = np.linalg.norm(self._target.closest(some, exact=True) - some, axis=1)
+        distance = np.linalg.norm(self._target.closest(some) - some, axis=1)
         return Fit(self._coefficients, points, self._matrix, float(distance.mean()), status, count)
 
 
