@@ -8,6 +8,8 @@ import type { PointsMode } from "./modes/points";
 export interface TestHandle {
   readonly revision: number;
   readonly frames: number;
+  /** Whether something has changed that is not drawn yet. */
+  readonly waiting: boolean;
   readonly latencies: number[];
   controlPoint: (index: number) => { x: number; y: number } | null;
   controlPosition: (index: number) => number[] | null;
@@ -15,6 +17,8 @@ export interface TestHandle {
   gizmoRadius: () => number;
   vertex: (index: number) => { x: number; y: number };
   position: (index: number) => number[];
+  /** Colours of a rectangle of the canvas, in CSS pixels of the page: rows from below, four bytes a pixel. */
+  pixels: (x: number, y: number, width: number, height: number) => number[];
   look: (x: number, y: number, z: number) => void;
   mode: (id: string) => void;
   skipDrawing: (skip: boolean) => void;
@@ -42,6 +46,9 @@ export function exposeForTests({ studio, modes, setMode }: App): void {
     get frames() {
       return viewport.drawn.value;
     },
+    get waiting() {
+      return viewport.waiting;
+    },
     latencies,
     controlPoint: (index) => onPage(points.screen(index)),
     controlPosition: (index) => points.points?.at(index).toArray() ?? null,
@@ -49,6 +56,10 @@ export function exposeForTests({ studio, modes, setMode }: App): void {
     gizmoRadius: () => points.gizmoRadius,
     vertex: (index) => onPage(viewport.project(new Vector3(...(position(index) as [number, number, number]))))!,
     position,
+    pixels: (x, y, width, height) => {
+      const { left, top } = viewport.canvas.getBoundingClientRect();
+      return viewport.read(x - left, y - top, width, height);
+    },
     look: (x, y, z) => studio.frame(undefined, new Vector3(x, y, z)),
     mode: setMode,
     skipDrawing: (skip) => {

@@ -50,6 +50,7 @@ class View:
     def settled(self):
         """Wait until the page shows what the session shows, and draws no more."""
         self.until(f"window.pliantStudio.revision === {self.session.revision}")
+        self.until("!window.pliantStudio.waiting")
         before = -1
         while before != (now := self.ask("window.pliantStudio.frames")):
             before = now

@@ -126,7 +126,7 @@ class Autosave:
             waiting, self._waiting, self._timer = self._waiting, None, None
         if waiting is None:
             return
-        scene, name = waiting
+        scene, _ = waiting
         try:
             save_project(scene.replace(mesh=self._with_textures(scene.mesh)), self._own)
         except (PliantError, OSError):

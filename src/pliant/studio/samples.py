@@ -89,7 +89,7 @@ def egg(around: int = 72, along: int = 48) -> PolygonMesh:
     ):
         toward = np.array(place) / np.linalg.norm(place)
         radius = radius + height * np.exp(-(np.linalg.norm(direction - toward, axis=-1) ** 2) / (2 * width**2))
-    return _capped(np.swapaxes(radius[..., None] * direction * [0.82, 0.92, 1.15], 0, 1))
+    return _capped(np.swapaxes(radius[..., None] * direction * [0.82, 0.92, 1.15], 0, 1)[::-1])
 
 
 def ball(around: int = 64, along: int = 32) -> PolygonMesh:
@@ -99,7 +99,7 @@ def ball(around: int = 64, along: int = 32) -> PolygonMesh:
     points = np.stack(
         [np.sin(polar) * np.cos(2 * np.pi * u), np.sin(polar) * np.sin(2 * np.pi * u), np.cos(polar)], axis=-1
     )
-    return _capped(np.swapaxes(points, 0, 1))
+    return _capped(np.swapaxes(points, 0, 1)[::-1])
 
 
 def textured_vase() -> PolygonMesh:

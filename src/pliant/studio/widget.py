@@ -41,7 +41,9 @@ class Widget(anywidget.AnyWidget):
         import pliant.studio.commands  # noqa: F401 -- registers what pages can ask for
 
         folder: Path = client_folder()
-        super().__init__(_esm=folder / "widget.js", _css=folder / "widget.css", height=height)
+        self._esm = (folder / "widget.js").read_text(encoding="utf-8")
+        self._css = (folder / "widget.css").read_text(encoding="utf-8")
+        super().__init__(height=height)
         scene = mesh if isinstance(mesh, Scene) else Scene(mesh, as_stack(stack))
         self._session = Session(scene, "shape")
         self.on_msg(self._receive)

@@ -17,10 +17,9 @@ export function chooseDeformer(studio: Studio, anchor: HTMLElement): void {
   const close = (): void => menu.hidePopover();
   const fill = (): void => {
     const word = search.value.trim().toLowerCase();
-    const kinds = (studio.session.catalogue.value?.kinds ?? []).filter((kind) =>
-      `${kind.title} ${kind.summary}`.toLowerCase().includes(word),
-    );
-    replace(list, ...Object.entries(GROUPS).flatMap(([group, title]) => inGroup(studio, kinds, group, t(title), close)));
+    const kinds = studio.session.catalogue.value?.kinds ?? [];
+    if (word) replace(list, ...found(kinds, word).map((kind) => item(studio, kind, close)));
+    else replace(list, ...Object.entries(GROUPS).flatMap(([group, title]) => inGroup(studio, kinds, group, t(title), close)));
   };
   search.addEventListener("input", fill);
   search.addEventListener("keydown", (event) => {
@@ -30,6 +29,15 @@ export function chooseDeformer(studio: Studio, anchor: HTMLElement): void {
   fill();
   showPopover(studio.root, menu, anchor);
   search.focus();
+}
+
+/** Those whose name begins with a word, then those whose name holds it, then those whose description does. */
+function found(kinds: Kind[], word: string): Kind[] {
+  const rank = ({ title, summary }: Kind): number => {
+    const at = title.toLowerCase().indexOf(word);
+    return at === 0 ? 0 : at > 0 ? 1 : summary.toLowerCase().includes(word) ? 2 : 3;
+  };
+  return kinds.filter((kind) => rank(kind) < 3).sort((a, b) => rank(a) - rank(b));
 }
 
 function inGroup(studio: Studio, kinds: Kind[], group: string, title: string, close: () => void): HTMLElement[] {

@@ -22,7 +22,7 @@ const FRAGMENT = `
   }
   void main() {
     float fade = 1.0 - smoothstep(0.12, 0.5, length(place));
-    float strength = max(lines(cells) * 0.28, lines(cells / 5.0) * 0.6) * fade;
+    float strength = max(lines(cells) * 0.16, lines(cells / 5.0) * 0.38) * fade;
     if (strength < 0.004) discard;
     gl_FragColor = vec4(color, strength * 0.8);
   }`;

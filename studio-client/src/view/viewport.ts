@@ -66,6 +66,11 @@ export class Viewport {
     return { width: this.element.clientWidth, height: this.element.clientHeight };
   }
 
+  /** Whether a drawing has been asked for. */
+  get waiting(): boolean {
+    return this.asked;
+  }
+
   /** Draw at the next opportunity. */
   request(): void {
     if (this.asked) return;
@@ -90,6 +95,7 @@ export class Viewport {
   /** A place of the scene in CSS pixels from the canvas's upper left corner, and its depth. */
   project(at: Vector3): { x: number; y: number; depth: number } {
     const { width, height } = this.size;
+    if (this.asked) this.camera.updateMatrixWorld(); // it has moved, and is not drawn yet
     const seen = at.clone().project(this.camera);
     return { x: ((seen.x + 1) / 2) * width, y: ((1 - seen.y) / 2) * height, depth: seen.z };
   }
@@ -109,6 +115,17 @@ export class Viewport {
   frame(box: Box3, from?: Vector3): void {
     this.cameras.setReach(Math.max(box.getSize(new Vector3()).length(), this.cameras.target.length() * 1e-6));
     this.cameras.frame(box, from);
+  }
+
+  /** Colours of a rectangle as it is drawn now: rows from below, four bytes a pixel. */
+  read(x: number, y: number, width: number, height: number): number[] {
+    this.draw();
+    const ratio = this.renderer.getPixelRatio();
+    const gl = this.renderer.getContext();
+    const bytes = new Uint8Array(4 * width * height);
+    const below = gl.drawingBufferHeight - Math.round(ratio * y) - height;
+    gl.readPixels(Math.round(ratio * x), below, width, height, gl.RGBA, gl.UNSIGNED_BYTE, bytes);
+    return [...bytes];
   }
 
   /** The view as a picture of any size. */
