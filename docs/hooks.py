@@ -217,9 +217,8 @@ def layers() -> str:
     rooms = project["tool"]["importlinter"]["contracts"][0]["layers"]
     lines = []
     for room in rooms:
-        name = room.split("|")[0].strip().removeprefix("pliant.")
-        words = first_sentence(name)
-        lines.append(f"| `{room.replace('pliant.', '')}` | {words} |")
+        names = [name.strip(" ()").removeprefix("pliant.") for name in room.split("|")]
+        lines.append(f"| {', '.join(f'`{name}`' for name in names)} | {'<br>'.join(map(first_sentence, names))} |")
     return "\n".join(["| room | what it is for |", "|---|---|", *lines])
 
 
