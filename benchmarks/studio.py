@@ -25,10 +25,17 @@ from pliant.studio.samples import torus
 SIZES = {"35k": (268, 131), "200k": (640, 313), "1M": (1430, 700)}
 LATTICES = ((8, 8, 8), (4, 4, 4))
 GOALS = {("35k", (8, 8, 8)): "2 ms, 150 kB, 40 ms", ("200k", (8, 8, 8)): "6 ms, 800 kB, 80 ms"}
-FLAGS = (
-    "--no-sandbox --use-gl=angle --use-angle=swiftshader --enable-unsafe-swiftshader --disable-quic --no-first-run "
-    "--disable-background-networking --disable-component-update --disable-sync"
-).split()
+FLAGS = [
+    "--no-sandbox",
+    "--use-gl=angle",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+]
 
 
 class Page:
@@ -111,9 +118,8 @@ def main():
         for shape in LATTICES:
             cost, sent = server_side(size, shape)
             goal = GOALS.get((size, shape), "")
-            print(
-                f"| {size} | {' × '.join(map(str, shape))} | {cost:.2f} | {1000 / cost:.0f} | {sent / 1000:.0f} | {goal} |"
-            )
+            name, rate = " × ".join(map(str, shape)), 1000 / cost
+            print(f"| {size} | {name} | {cost:.2f} | {rate:.0f} | {sent / 1000:.0f} | {goal} |")
     if not wanted.browser:
         return
     from playwright.sync_api import sync_playwright

@@ -17,10 +17,11 @@ from pliant.studio.launching import launch
 from pliant.studio.samples import torus
 
 OUT = Path(__file__).parents[1] / "docs" / "pictures"
-FLAGS = "--no-sandbox --use-gl=angle --use-angle=swiftshader --enable-unsafe-swiftshader".split()
+FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 
 
 def main() -> None:
+    """Draw them all."""
     mesh = torus(120, 52)
     lattice = pl.BSplineFFD.around(mesh, shape=(5, 5, 3), margin=0.08)
     controls = np.array(lattice.rest)
@@ -33,7 +34,7 @@ def main() -> None:
         studio = launch(scene, "torus", port=0, autosave=Path(folder))
         studio.start()
         browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=FLAGS)
-        page = browser.new_page(viewport={"width": 1280, "height": 800}, device_scale_factor=2)
+        page = browser.new_page(viewport={"width": 1280, "height": 800}, device_scale_factor=1.5)
         page.goto(studio.url)
         wait(page, "window.pliantStudio && window.pliantStudio.controlPoint(0) !== null")
         at = page.evaluate("window.pliantStudio.controlPoint(71)")
@@ -55,6 +56,7 @@ def main() -> None:
 
 
 def wait(page, script: str) -> None:
+    """Until a script is true on the page, and drawn."""
     for _ in range(600):
         if page.evaluate(script):
             time.sleep(1)
@@ -64,9 +66,9 @@ def wait(page, script: str) -> None:
 
 
 def save(page, name: str) -> None:
+    """A screenshot."""
     data = page.screenshot()
-    picture = Image.open(io.BytesIO(data)).convert("RGB").quantize(256, dither=Image.Dither.NONE)
-    picture.save(OUT / f"{name}.png", optimize=True)
+    Image.open(io.BytesIO(data)).convert("RGB").save(OUT / f"{name}.png", optimize=True)
 
 
 def clip(page) -> None:

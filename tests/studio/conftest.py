@@ -10,6 +10,8 @@ sys.path.insert(0, str(Path(__file__).parent))
 
 from browser import FLAGS, View
 
+SIZE = {"width": 1000, "height": 640}
+
 
 @pytest.fixture(scope="session")
 def browser():
@@ -23,17 +25,31 @@ def browser():
         running.close()
 
 
+@pytest.fixture(scope="session")
+def shared(tmp_path_factory):
+    """One studio for all tests that need no other: each begins a scene of its own."""
+    from pliant.studio.launching import launch
+
+    folder = tmp_path_factory.mktemp("studio")
+    studio = launch(port=0, root=folder, autosave=folder / "state")
+    studio.start()
+    yield studio
+    studio.stop()
+
+
 @pytest.fixture
-def launched(tmp_path):
-    """Start studios; they end with the test."""
+def launched(shared, tmp_path):
+    """A studio on a scene; with ``own`` one that shares nothing with other tests."""
     from pliant.studio.launching import launch
 
     running = []
 
-    def start(scene=None, name="shape", **options):
-        root = options.pop("root", tmp_path / "root")
-        root.mkdir(exist_ok=True)
-        found = launch(scene, name if scene else "", port=0, root=root, autosave=tmp_path / "state", **options)
+    def start(scene=None, *, own=False):
+        if not own:
+            session = shared.session
+            session.submit(*((session.close,) if scene is None else (session.begin, scene, "shape"))).result()
+            return shared
+        found = launch(scene, "shape" if scene else "", port=0, root=tmp_path, autosave=tmp_path / "state")
         found.start()
         running.append(found)
         return found
@@ -43,22 +59,29 @@ def launched(tmp_path):
         each.stop()
 
 
+@pytest.fixture(scope="session")
+def usual(browser):
+    context = browser.new_context(viewport=SIZE)
+    yield context
+    context.close()
+
+
 @pytest.fixture
-def view(browser):
+def view(browser, usual):
     """Open pages on studios; a page that has complained of anything fails its test."""
-    contexts, complaints = [], []
+    opened, complaints = [], []
 
     def look(studio, **options):
-        context = browser.new_context(viewport={"width": 1000, "height": 640}, **options)
-        context.set_default_timeout(15_000)
-        contexts.append(context)
+        context = browser.new_context(viewport=SIZE, **options) if options else usual
         page = context.new_page()
+        opened.append(context if options else page)
+        page.set_default_timeout(15_000)
         page.on("pageerror", lambda error: complaints.append(str(error)))
         page.on("console", lambda said: complaints.append(said.text) if said.type == "error" else None)
         page.goto(f"{studio.url}&antialias=off")
         return View(page, studio, complaints)
 
     yield look
-    for context in contexts:
-        context.close()
+    for each in opened:
+        each.close()
     assert not complaints

@@ -291,7 +291,7 @@ def test_a_reload_shows_the_same(launched, view):
 
 
 def test_unsaved_work_is_recovered_after_a_crash(launched, view):
-    first = launched(round_scene())
+    first = launched(round_scene(), own=True)
     page = view(first)
     page.drawn()
     page.handles()
@@ -301,7 +301,7 @@ def test_unsaved_work_is_recovered_after_a_crash(launched, view):
     expected = page.session.scene.deformed().points
     page.session.autosave.flush()  # a killed studio leaves what it has kept; nothing else of it is used below
     page.page.close()
-    again = view(launched())
+    again = view(launched(own=True))
     again.until("document.querySelector('.recovery button') !== null")
     again.page.locator(".recovery button").first.click()
     again.drawn()
@@ -348,7 +348,7 @@ def test_chinese_and_dark(launched, view):
 
 
 def test_the_help_sheet_and_the_view_by_keys(launched, view):
-    page = view(launched(moved_scene()))
+    page = view(launched(moved_scene()), color_scheme="light")
     page.drawn()
     page.page.locator("canvas").first.focus()
     page.page.keyboard.press("w")

@@ -22,6 +22,7 @@ export function listen(studio: Studio): void {
     "pointerdown",
     (event) => {
       if (event.target !== canvas || event.button !== 0 || captured !== null) return;
+      element.classList.add("by-pointer"); // no ring around the canvas for those who see where they click
       canvas.focus({ preventScroll: true });
       if (!studio.mode.value?.down?.(sample(event))) return;
       captured = event.pointerId;
@@ -42,5 +43,6 @@ export function listen(studio: Studio): void {
   };
   canvas.addEventListener("pointerup", release);
   canvas.addEventListener("pointercancel", release);
+  canvas.addEventListener("blur", () => element.classList.remove("by-pointer"));
   canvas.addEventListener("contextmenu", (event) => event.preventDefault());
 }

@@ -83,6 +83,7 @@ export class Gizmo {
   private make(): { controls: TransformControls; anchor: Object3D } {
     const controls = new TransformControls(this.viewport.cameras.active, this.viewport.canvas);
     controls.setSize(0.85);
+    controls.setColors("#d93a50", "#2f9a4a", "#2f6be0", "#f2a53c");
     controls.addEventListener("change", () => this.viewport.request());
     controls.addEventListener("objectChange", () => this.onMove(this.matrix()));
     controls.addEventListener("dragging-changed", (event) => {
