@@ -1,6 +1,7 @@
 """The studio in a real browser, against what the library computes."""
 
 import shutil
+import time
 from dataclasses import replace
 from pathlib import Path
 
@@ -357,3 +358,32 @@ def test_the_help_sheet_and_the_view_by_keys(launched, view):
     page.page.keyboard.press("?")
     page.page.get_by_role("dialog", name="Keyboard and mouse").wait_for()
     page.page.keyboard.press("Escape")
+
+
+def test_a_lost_connection_is_told_and_the_shape_stays(launched, view):
+    studio = launched(moved_scene(), own=True)
+    page = view(studio, color_scheme="light")
+    page.drawn()
+    before = page.positions(50)
+    studio.stop()
+    page.until("document.querySelector('.link.lost') !== null")
+    np.testing.assert_array_equal(page.positions(50), before)
+    assert "Trying again" in page.page.locator(".link").inner_text()
+    page.complaints.clear()  # the browser complains that nobody listens
+
+
+def test_a_connection_that_comes_back_shows_what_has_happened_meanwhile(launched, view):
+    page = view(launched(round_scene()))
+    page.drawn()
+    session = page.session
+    before = list(session.clients)
+    for client in before:
+        client._loop.call_soon_threadsafe(lambda each=client: each._loop.create_task(each._socket.close()))
+    end = time.monotonic() + 15
+    while set(session.clients) & set(before):
+        assert time.monotonic() < end
+        time.sleep(0.01)
+    session.submit(session.begin, moved_scene(), "another").result()
+    page.until("document.querySelector('.link.open') !== null")
+    page.settled()
+    same_points(page)
