@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import gc
 import logging
 import os
 import signal
@@ -21,6 +22,9 @@ from pliant.batch.outcome import Job
 from pliant.batch.parcel import sent
 from pliant.batch.plans import plan_of
 from pliant.examples import vase
+
+# a cluster whose workers were killed leaves sockets that nobody closes
+pytestmark = pytest.mark.filterwarnings("ignore::ResourceWarning", "ignore::pytest.PytestUnraisableExceptionWarning")
 
 
 @pytest.fixture
@@ -56,13 +60,14 @@ def killer(living, *, seed, times):
         thread.join()
 
 
-@pytest.fixture(scope="module")
+@pytest.fixture
 def cluster():
     logging.getLogger("distributed").setLevel(logging.CRITICAL)
     with LocalCluster(
         n_workers=3, threads_per_worker=1, dashboard_address=None, silence_logs=logging.CRITICAL
     ) as local:
         yield local
+    gc.collect()  # what it leaves is found here, and not in another test
 
 
 def test_a_cluster_whose_workers_are_killed(cluster, stack, many, serial, tmp_path):

@@ -60,6 +60,7 @@ def test_wrong_usage(run, cohort, words, cause):
     assert not (cohort / "o").exists()
 
 
+@pytest.mark.filterwarnings("ignore::ResourceWarning", "ignore::pytest.PytestUnraisableExceptionWarning")
 def test_a_cluster(run, cohort):
     with LocalCluster(n_workers=1, threads_per_worker=1, processes=False, dashboard_address=None) as cluster:
         words = ("-r", "twist-up", "-o", f"{cohort}/out/{{stem}}.ply", "--scheduler", cluster.scheduler_address)
