@@ -92,6 +92,7 @@ from .shape.metrics import leave_one_out as leave_one_out
 from .shape.metrics import specificity as specificity
 from .shape.model import ShapeModel as ShapeModel
 from .shape.pca import learn_model as learn_model
+from .shape.pose_walk import PoseWalk as PoseWalk
 from .shape.procrustes import align as align
 from .shape.procrustes import generalized_procrustes as generalized_procrustes
 from .shape.registration import Fit as Fit

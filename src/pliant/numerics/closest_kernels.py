@@ -1,4 +1,4 @@
-"""The kernel for closest points on triangles (Ericson 2005, section 5.1.5), in a tree of boxes."""
+"""Kernels for closest points on triangles (Ericson 2005, section 5.1.5), in a tree of boxes, and for normals."""
 
 from __future__ import annotations
 
@@ -97,3 +97,17 @@ def nearest_in(points, start, stop, corners, bounds, boxes, chosen, weights, dis
                     least, best, best_v, best_w = d, t, v, w
         distance[i], chosen[i] = least, best
         weights[i, 0], weights[i, 1], weights[i, 2] = 1.0 - best_v - best_w, best_v, best_w
+
+
+@kernel
+def add_normals(points, triangles, sums):
+    """Add to the (n, 3) sums of each corner its triangle's normal, twice the area long."""
+    for t in range(len(triangles)):
+        a, b, c = triangles[t, 0], triangles[t, 1], triangles[t, 2]
+        ux, uy, uz = points[b, 0] - points[a, 0], points[b, 1] - points[a, 1], points[b, 2] - points[a, 2]
+        vx, vy, vz = points[c, 0] - points[a, 0], points[c, 1] - points[a, 1], points[c, 2] - points[a, 2]
+        nx, ny, nz = uy * vz - uz * vy, uz * vx - ux * vz, ux * vy - uy * vx
+        for i in (a, b, c):
+            sums[i, 0] += nx
+            sums[i, 1] += ny
+            sums[i, 2] += nz

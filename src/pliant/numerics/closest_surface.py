@@ -12,7 +12,7 @@ from pliant.numerics.chunks import for_chunks
 Floats = NDArray[np.float64]
 Integers = NDArray[np.integer]
 
-_LEAF = 4  # triangles, at least, in a box that is not divided
+_LEAF = 2  # triangles, at least, in a box that is not divided
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ class TriangleSearch:
                 queries, start, stop, self._corners, self._bounds, self._boxes, chosen, weights, distance
             ),
             count,
-            1024,
+            512,
         )
         corners = self._corners[chosen]
         places = weights[:, :1] * corners[:, 0] + weights[:, 1:2] * corners[:, 1] + weights[:, 2:] * corners[:, 2]

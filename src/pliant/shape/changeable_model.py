@@ -11,6 +11,7 @@ from numpy.typing import ArrayLike
 from pliant.errors import InvalidParameter
 from pliant.mesh import PolygonMesh
 from pliant.shape.basis import FullBasis, ScalarBasis
+from pliant.shape.decimation import decimated
 from pliant.shape.domain import Interpolation, carriers, submesh
 from pliant.shape.kernels import Kernel
 from pliant.shape.linear_model import LinearModel
@@ -29,6 +30,21 @@ class ChangeableModel(LinearModel):
         mesh, cells = submesh(self.reference, self.cells, chosen)
         return replace(
             self, reference=mesh, mean=self.mean[chosen], basis=self.basis.rows(chosen), cells=cells, carrier=None
+        )
+
+    def decimated(self, count: int) -> Self:
+        """The model of at most ``count`` of its vertices, far apart, with triangles between them.
+
+        Raises
+        ------
+        InvalidParameter
+            Fewer than four vertices, or more than there are.
+        InvalidMesh
+            The model has no faces.
+        """
+        mesh, kept = decimated(self.reference, count)
+        return replace(
+            self, reference=mesh, mean=self.mean[kept], basis=self.basis.rows(kept), cells=None, carrier=None
         )
 
     def truncated(self, rank: int) -> Self:
@@ -82,7 +98,7 @@ class ChangeableModel(LinearModel):
             basis = self.process.at(mesh.points)
             shift = self.process.mean(mesh.points)
         else:
-            corners, weights = carriers(self.reference, mesh.points, interpolation)
+            corners, weights = carriers(self.reference, mesh.points, interpolation, self.cells)
             basis = self.basis.rows(corners, weights)
             shift = np.einsum("mc,mcd->md", weights, (self.mean - self.reference.points)[corners])
         return replace(self, reference=mesh, mean=mesh.points + shift, basis=basis, cells=None, carrier=None)

@@ -9,6 +9,8 @@ those of this construction, so that chains converge to the density asked for.
 
 from __future__ import annotations
 
+from typing import Literal
+
 import numpy as np
 
 from pliant.errors import InvalidParameter
@@ -16,8 +18,11 @@ from pliant.mesh import PolygonMesh
 from pliant.shape.basis import Floats
 from pliant.shape.correspondence import Target
 from pliant.shape.densities import remembering
+from pliant.shape.descent import pose_matrix
 from pliant.shape.kernels import positive
 from pliant.shape.linear_model import LinearModel
+from pliant.shape.pose_walk import SIZE, exponential_volume
+from pliant.shape.procrustes import moved
 from pliant.shape.sampling import NormalProposal
 
 
@@ -34,9 +39,27 @@ class ClosestPointDensity:
         The standard deviation of distances, a length.
     points
         At most so many vertices look for the target.
+    pose
+        ``"rigid"``: states begin with a rotation vector about the mean's centre and a shift, for
+        :class:`~pliant.shape.pose_walk.PoseWalk`; rotations are as likely one as the other, and so are shifts.
+
+    Raises
+    ------
+    InvalidParameter
+        Noise that is not positive, or another pose.
     """
 
-    def __init__(self, model: LinearModel, target: PolygonMesh, noise: float, points: int = 200) -> None:
+    def __init__(
+        self,
+        model: LinearModel,
+        target: PolygonMesh,
+        noise: float,
+        points: int = 200,
+        pose: Literal["rigid"] | None = None,
+    ) -> None:
+        if pose not in (None, "rigid"):
+            raise InvalidParameter(f"a density has the pose 'rigid' or None, not {pose!r}")
+        self._free, self._center = 0 if pose is None else SIZE, model.mean.mean(axis=0)
         self._noise = positive("the noise", noise)
         self._target = Target(target, np.pi)
         chosen = np.arange(0, len(model.mean), -(-len(model.mean) // max(1, points)))
@@ -44,9 +67,11 @@ class ClosestPointDensity:
         self._columns = np.ascontiguousarray(model.basis.rows(chosen).columns())
         self._found = remembering(self._look)
 
-    def __call__(self, coefficients: Floats) -> float:
-        apart, _ = self._found(coefficients)
-        return -0.5 * float((apart**2).sum() / self._noise**2 + coefficients @ coefficients)
+    def __call__(self, state: Floats) -> float:
+        apart, _ = self._found(state)
+        coefficients = state[self._free :]
+        density = -0.5 * float((apart**2).sum() / self._noise**2 + coefficients @ coefficients)
+        return density + float(np.log(exponential_volume(state[:3]))) if self._free else density
 
     def proposal(self, step: float = 0.5, slide: float = 100.0) -> NormalProposal:
         """Steps from the present coefficients part of the way to the posterior of the closest points.
@@ -80,12 +105,19 @@ class ClosestPointDensity:
             rows, goal = rows / self._noise, goal / self._noise
             covariance = np.linalg.inv(np.eye(rows.shape[1]) + rows.T @ rows)
             factor = spread * np.asarray(np.linalg.cholesky((covariance + covariance.T) / 2), np.float64)
-            return state + share * (covariance @ (rows.T @ goal - state)), factor
+            coefficients = state[self._free :]
+            mean = coefficients + share * (covariance @ (rows.T @ goal - coefficients))
+            return mean, factor
 
-        return NormalProposal(remembering(distribution))
+        return NormalProposal(remembering(distribution), self._free)
 
-    def _look(self, coefficients: Floats) -> tuple[Floats, Floats | None]:
-        """(m, 3) from the shape's points to the closest ones, and (m, 3) the normals there."""
-        points = self._mean + self._columns @ coefficients
-        places, normals, _ = self._target.correspondences(points, None)
-        return places - points, normals
+    def _look(self, state: Floats) -> tuple[Floats, Floats | None]:
+        """(m, 3) from the shape's points to the closest ones, and (m, 3) the normals there, in the model's frame."""
+        points = self._mean + self._columns @ state[self._free :]
+        if not self._free:
+            places, normals, _ = self._target.correspondences(points, None)
+            return places - points, normals
+        matrix = pose_matrix(state, self._center)
+        posed, turn = moved(matrix, points), matrix[:3, :3]
+        places, normals, _ = self._target.correspondences(posed, None)
+        return (places - posed) @ turn, None if normals is None else normals @ turn

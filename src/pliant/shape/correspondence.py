@@ -85,13 +85,22 @@ class Target:
     def _open(self) -> Booleans:
         """(n,) vertices on a border; vertices at one place count as one, as in files that repeat them."""
         points, faces = self.mesh.points, self.mesh.triangles
-        _, same = np.unique(points, axis=0, return_inverse=True)
-        sides = Ragged.of(same.reshape(-1)[faces])
+        same = _places(points)
+        sides = Ragged.of(same[faces])
         edges = np.stack([sides.flat, np.roll(sides.flat.reshape(-1, 3), -1, axis=1).reshape(-1)], axis=1)
         unique, count = np.unique(np.sort(edges, axis=1), axis=0, return_counts=True)
         border = np.zeros(len(points), bool)
         border[unique[count == 1].reshape(-1)] = True
-        return np.asarray(border[same.reshape(-1)])
+        return np.asarray(border[same])
+
+
+def _places(points: Floats) -> NDArray[np.int64]:
+    """(n,) one number for all points at one place."""
+    order = np.lexsort(points.T)
+    new = (np.diff(points[order], axis=0, prepend=points[order[:1]]) != 0).any(axis=1)
+    same = np.empty(len(points), np.int64)
+    same[order] = np.cumsum(new)
+    return same
 
 
 def triangle_normals(points: Floats, triangles: NDArray[np.int32]) -> Floats:
@@ -104,11 +113,10 @@ def triangle_normals(points: Floats, triangles: NDArray[np.int32]) -> Floats:
 
 def vertex_normals(points: Floats, triangles: NDArray[np.int32]) -> Floats:
     """(n, 3) unit normals, weighted by area; zero where no triangle defines one."""
-    a, b, c = points[triangles[:, 0]], points[triangles[:, 1]], points[triangles[:, 2]]
-    normals, sums = cross(b - a, c - a), np.empty_like(points)
-    for axis in range(3):
-        share = np.repeat(normals[:, axis], 3)
-        sums[:, axis] = np.bincount(triangles.reshape(-1), share, minlength=len(points))
+    from pliant.numerics.closest_kernels import add_normals
+
+    sums = np.zeros_like(points)
+    add_normals(np.ascontiguousarray(points), np.ascontiguousarray(triangles), sums)
     length = np.sqrt(np.einsum("ni,ni->n", sums, sums))[:, None]
     return np.asarray(np.divide(sums, length, out=np.zeros_like(sums), where=length > 0))
 

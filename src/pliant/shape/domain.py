@@ -15,7 +15,7 @@ from pliant.shape.basis import Basis, Floats
 if TYPE_CHECKING:
     from pliant.shape.linear_model import LinearModel
 
-Interpolation = Literal["nearest", "surface"]
+Interpolation = Literal["nearest", "surface", "tetrahedra"]
 Where = ArrayLike
 
 
@@ -41,16 +41,27 @@ def observed_rows(model: LinearModel, where: Where) -> tuple[Floats, Basis, Poin
     return points, model.basis.rows(corners, weights), mean
 
 
-def carriers(mesh: PolygonMesh, points: Points, interpolation: Interpolation) -> tuple[NDArray[np.int64], Floats]:
-    """(m, c) vertices that each point follows, and their weights, c = 1 or 3.
+def carriers(
+    mesh: PolygonMesh, points: Points, interpolation: Interpolation, cells: NDArray[np.int32] | None = None
+) -> tuple[NDArray[np.int64], Floats]:
+    """(m, c) vertices that each point follows, and their weights, c = 1, 3 or 4.
 
     Raises
     ------
     InvalidParameter
-        An unknown word.
+        An unknown word, or tetrahedra of a model that has none.
     """
-    if interpolation not in ("nearest", "surface"):
-        raise InvalidParameter(f"a model interpolates by 'nearest' or 'surface', not {interpolation!r}")
+    if interpolation not in ("nearest", "surface", "tetrahedra"):
+        raise InvalidParameter(
+            f"a model interpolates by 'nearest', 'surface' or 'tetrahedra', not by {interpolation!r}"
+        )
+    if interpolation == "tetrahedra":
+        if cells is None or not len(cells):
+            raise InvalidParameter("the model has no tetrahedra to interpolate in: take 'surface' or 'nearest'")
+        from pliant.shape.tetrahedra import surrounding
+
+        corners, weights = surrounding(mesh.points, cells, points)
+        return corners.astype(np.int64), weights
     if interpolation == "surface" and len(mesh.triangles):
         from pliant.numerics.closest_surface import TriangleSearch
 

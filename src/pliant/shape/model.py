@@ -16,19 +16,17 @@ from pliant.deformer import Deformer
 from pliant.errors import InvalidMesh, InvalidParameter
 from pliant.mesh import Points, PolygonMesh, as_points
 from pliant.shape.basis import Basis, Floats
-from pliant.shape.changeable_model import ChangeableModel
 from pliant.shape.domain import Interpolation, Where, observed_rows
+from pliant.shape.fitted_model import FittedModel
 from pliant.shape.kernels import Kernel
 from pliant.shape.low_rank import nystrom
 from pliant.shape.pivoted_cholesky import pivoted_cholesky
 from pliant.shape.posterior import Noise, condition, log_likelihood, most_likely, warn_of_contradictions
-from pliant.shape.registration import Fit, Pose, fit
-from pliant.shape.robust import Loss
 from pliant.shape.surface_samples import Spread, surface_samples
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class ShapeModel(ChangeableModel):
+class ShapeModel(FittedModel):
     """A statistical model of a shape: triangle or polygon meshes, tetrahedra, lines, or bare points.
 
     Parameters
@@ -152,61 +150,6 @@ class ShapeModel(ChangeableModel):
         """The marginal likelihood of observations, as for :meth:`posterior`: its logarithm."""
         return log_likelihood(*self._observed(where, positions, noise))
 
-    def fit(
-        self,
-        mesh: PolygonMesh,
-        *,
-        iterations: int = 50,
-        noise: float | None = None,
-        start_noise: float | None = None,
-        pose: Pose | None = None,
-        loss: Loss = "huber",
-        angle: float = np.pi / 3,
-        slide: float = 3.0,
-    ) -> Fit:
-        """The model's shape that lies on a mesh of any topology: GP-ICP, no correspondence needed.
-
-        To use landmarks, fit their :meth:`posterior`.
-
-        Parameters
-        ----------
-        mesh
-            The target: a mesh, a part of one, or bare points.
-        iterations
-            At most so many rounds.
-        noise
-            The standard deviation of the target's points at last, a length; None = a thousandth of the diagonal.
-        start_noise
-            At first; it shrinks from round to round. None = a fiftieth of the diagonal.
-        pose
-            None = model and target lie in one space. ``"rigid"`` moves and turns the model too, beginning with the
-            centres of both; ``"similarity"`` scales it as well.
-        loss
-            How distances count: ``"squares"``, ``"huber"``, or ``"tukey"``, which leaves far points out.
-        angle
-            Normals that differ by more, in radians, do not correspond.
-        slide
-            How many times farther a point may move along the target than off it.
-
-        Raises
-        ------
-        InvalidParameter, InvalidTarget
-            No iterations, noise that is not positive, a target without points.
-        NotConverged
-            Almost nothing of the shape corresponds to the target.
-        """
-        return fit(
-            self,
-            mesh,
-            iterations=iterations,
-            noise=noise,
-            start_noise=start_noise,
-            pose=pose,
-            loss=loss,
-            angle=angle,
-            slide=slide,
-        )
-
     def deformer(
         self, coefficients: ArrayLike | None = None, *, interpolation: Interpolation | None = None
     ) -> Deformer:
@@ -220,7 +163,8 @@ class ShapeModel(ChangeableModel):
         coefficients
             In standard deviations.
         interpolation
-            ``"nearest"`` vertex, or ``"surface"``: the closest point of the surface.
+            ``"nearest"`` vertex, ``"surface"``: the closest point of the surface, or ``"tetrahedra"``: where a point
+            lies in a volume mesh.
         """
         from pliant.shape.model_deformer import ModelDeformer
         from pliant.shape.random_field import RandomField

@@ -33,7 +33,8 @@ class ModelDeformer(Deformer):
         (k,) in standard deviations; None = zeros.
     interpolation
         None = the target's vertices are the model's, one by one. ``"nearest"``, ``"surface"``: a target's point
-        follows the vertex, or the point of the surface, of the reference that is closest.
+        follows the vertex, or the point of the surface, of the reference that is closest; ``"tetrahedra"``: the
+        one that it lies in.
     """
 
     model: ShapeModel
@@ -69,7 +70,7 @@ class ModelDeformer(Deformer):
         points, model = as_points(target), self.model
         shift, basis = model.mean - model.reference.points, model.basis
         if self.interpolation is not None:
-            corners, weights = carriers(model.reference, points, self.interpolation)
+            corners, weights = carriers(model.reference, points, self.interpolation, model.cells)
             basis = basis.rows(corners, weights)
             shift = np.asarray(np.einsum("mc,mcd->md", weights, shift[corners]))
         elif len(points) != len(shift):

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from pliant.errors import InvalidParameter, NotConverged
+from pliant.errors import InvalidParameter, InvalidTarget, NotConverged
 from pliant.mesh import Points, PolygonMesh
 from pliant.numerics.one_thread import one_blas_thread
 from pliant.shape import robust
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 Pose = Literal["rigid", "similarity"]
 
 SETTLED = 1e-3  # of the last noise: a shape that moves less has converged
+_UNITS = 50.0  # times larger or smaller: not one unit of length
 _START = 0.02  # of the diagonal: the noise of the first round
 _FINAL = 1e-3  # of the diagonal: that of the last
 _MOST = 4000  # vertices that look for closest points: more say little more
@@ -74,13 +75,12 @@ def fit(
     slide: float = 3.0,
 ) -> Fit:
     """Fit by GP-ICP; parameters as for :meth:`pliant.ShapeModel.fit`."""
-    size = model.reference.diagonal or 1.0
-    last = positive("the noise", _FINAL * size if noise is None else noise)
-    first = max(last, positive("the noise at the start", _START * size if start_noise is None else start_noise))
+    last, first = checked_noise(model, noise, start_noise)
     if iterations < 1 or pose not in (None, "rigid", "similarity"):
         raise InvalidParameter(
             f"a fit has at least one iteration, and a pose 'rigid', 'similarity' or None, not {pose!r}"
         )
+    checked_target(model, mesh, pose)
     rounds = _Rounds(model, Target(mesh, angle), pose, loss, max(1.0, slide))
     status: Literal["converged", "stopped"] = "stopped"
     count = 0
@@ -92,6 +92,44 @@ def fit(
                 status = "converged"
                 break
     return rounds.result(status, count)
+
+
+def checked_noise(model: LinearModel, noise: float | None, start_noise: float | None) -> tuple[float, float]:
+    """The noise at last and at first.
+
+    Raises
+    ------
+    InvalidParameter
+        Noise that is not positive.
+    """
+    size = model.reference.diagonal or 1.0
+    last = positive("the noise", _FINAL * size if noise is None else noise)
+    return last, max(last, positive("the noise at the start", _START * size if start_noise is None else start_noise))
+
+
+def checked_target(model: LinearModel, mesh: PolygonMesh, pose: Pose | None) -> None:
+    """See that a target can be the model's.
+
+    Raises
+    ------
+    InvalidTarget
+        No points, another unit of length, or far from a model that may not move.
+    """
+    if not len(mesh.points):
+        raise InvalidTarget("the target has no points: there is nothing to fit to")
+    size, other = model.reference.diagonal, mesh.diagonal
+    if pose != "similarity" and size > 0 and not size / _UNITS < max(other, 1e-300) < size * _UNITS:
+        raise InvalidTarget(
+            f"the target's diagonal is {other:.4g}, the model's {size:.4g}: are both in one unit of length? Scale one, "
+            "or fit with pose='similarity'"
+        )
+    (low, high), (low_there, high_there) = model.reference.with_points(model.mean).bounds, mesh.bounds
+    gap = float(np.linalg.norm(np.maximum(np.maximum(low - high_there, low_there - high), 0.0)))
+    if pose is None and gap > size:
+        raise InvalidTarget(
+            f"the target is {gap:.4g} away from the model, which is {size:.4g} large: give pose='rigid' for the model "
+            "to move"
+        )
 
 
 class _Rounds:

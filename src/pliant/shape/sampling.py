@@ -21,6 +21,11 @@ Floats = NDArray[np.float64]
 LogDensity = Callable[[Floats], float]
 
 
+def normal_density(standard: Floats) -> float:
+    """The logarithm of the density of standard normal numbers."""
+    return -0.5 * float(standard @ standard) - 0.5 * len(standard) * float(np.log(2 * np.pi))
+
+
 class Proposal(ABC):
     """A random step from one state (k,) to another."""
 
@@ -35,18 +40,32 @@ class Proposal(ABC):
 
 @dataclass(frozen=True)
 class RandomWalk(Proposal):
-    """Normal steps of one standard deviation in every coefficient."""
+    """Normal steps of one standard deviation.
+
+    Parameters
+    ----------
+    step
+        The standard deviation.
+    first
+        Numbers of the state before this one stay as they are: 6 where a pose comes first.
+    """
 
     step: float
+    first: int = 0
 
     def __post_init__(self) -> None:
         positive("the step of a random walk", self.step)
 
     def draw(self, state: Floats, random: np.random.Generator) -> Floats:
-        return np.asarray(state + self.step * random.standard_normal(state.shape))
+        new = state.copy()
+        new[self.first :] += self.step * random.standard_normal(len(state) - self.first)
+        return new
 
     def log_density(self, new: Floats, state: Floats) -> float:
-        return _normal((new - state) / self.step) - len(state) * float(np.log(self.step))
+        if not np.array_equal(new[: self.first], state[: self.first]):
+            return -np.inf
+        steps = (new - state)[self.first :] / self.step
+        return normal_density(steps) - len(steps) * float(np.log(self.step))
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,25 +76,32 @@ class NormalProposal(Proposal):
     ----------
     distribution
         Gives for a state the mean (k,) and the lower triangular factor (k, k) of the covariance of the next.
+    first
+        Numbers of the state before this one stay as they are, and the distribution is of the others.
     """
 
     distribution: Callable[[Floats], tuple[Floats, Floats]]
+    first: int = 0
 
     def draw(self, state: Floats, random: np.random.Generator) -> Floats:
         mean, factor = self.distribution(state)
-        return np.asarray(mean + factor @ random.standard_normal(len(mean)))
+        return np.concatenate([state[: self.first], mean + factor @ random.standard_normal(len(mean))])
 
     def log_density(self, new: Floats, state: Floats) -> float:
         from scipy.linalg import solve_triangular
 
+        if not np.array_equal(new[: self.first], state[: self.first]):
+            return -np.inf
         mean, factor = self.distribution(state)
-        standard = solve_triangular(factor, new - mean, lower=True, check_finite=False)
-        return _normal(standard) - float(np.log(np.diagonal(factor)).sum())
+        standard = solve_triangular(factor, new[self.first :] - mean, lower=True, check_finite=False)
+        return normal_density(standard) - float(np.log(np.diagonal(factor)).sum())
 
 
 @dataclass(frozen=True, eq=False)
 class Mixture(Proposal):
     """One of several proposals, at random; its density is that of all together.
+
+    Proposals of one part of the state only, as of the pose, may stand beside proposals of the rest.
 
     Parameters
     ----------
@@ -195,7 +221,3 @@ def _checked(value: float) -> float:
     if np.isnan(value) or value == np.inf:
         raise NonFiniteResult(f"a log density is {value}: it must be a number, or -inf where nothing is")
     return float(value)
-
-
-def _normal(standard: Floats) -> float:
-    return -0.5 * float(standard @ standard) - 0.5 * len(standard) * float(np.log(2 * np.pi))

@@ -41,7 +41,7 @@ def surface_samples(mesh: PolygonMesh, count: int, spread: Spread = "area", seed
         return _by_area(mesh, count, random)
     few = min(count, len(mesh.points))
     if spread == "farthest":
-        return mesh.points[_farthest(mesh.points, few, random)]
+        return mesh.points[farthest(mesh.points, few, random)]
     return mesh.points[np.sort(random.choice(len(mesh.points), few, replace=False))]
 
 
@@ -58,7 +58,8 @@ def _by_area(mesh: PolygonMesh, count: int, random: np.random.Generator) -> Poin
     return np.asarray(np.einsum("mc,mcd->md", weights, chosen))
 
 
-def _farthest(points: Points, count: int, random: np.random.Generator) -> list[int]:
+def farthest(points: Points, count: int, random: np.random.Generator) -> list[int]:
+    """Vertices, each as far as can be from those before it."""
     chosen = [int(random.integers(len(points)))]
     distance = ((points - points[chosen[0]]) ** 2).sum(axis=1)
     while len(chosen) < count:
