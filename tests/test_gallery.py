@@ -48,6 +48,7 @@ NUMBERS = {
     "read_write_ffd": (0.0, 1e-7),  # the digits that the file keeps
     "scale": (1.6 * 1.1 * 0.6, 1e-12),
     "shape_model_modes": (0.9839, 1e-3),  # the variance in the first ten fields
+    "shape_model_samples": (0.9962, 1e-3),  # the variance in the first twenty fields
     "shape_uncertainty": (0.0, 1e-3),  # the mean passes through what was seen
     "sine": (0.0, 1e-12),  # sliding keeps volume
     "skeleton_edit": (0.3, 0.2),  # smooth, against torn

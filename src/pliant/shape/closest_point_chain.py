@@ -73,6 +73,10 @@ class ClosestPointDensity:
         density = -0.5 * float((apart**2).sum() / self._noise**2 + coefficients @ coefficients)
         return density + float(np.log(exponential_volume(state[:3]))) if self._free else density
 
+    def distances(self, state: Floats) -> Floats:
+        """(m,) how far the points that look for the target are from it."""
+        return np.asarray(np.linalg.norm(self._found(state)[0], axis=1))
+
     def proposal(self, step: float = 0.5, slide: float = 100.0) -> NormalProposal:
         """Steps from the present coefficients part of the way to the posterior of the closest points.
 
