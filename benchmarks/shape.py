@@ -99,7 +99,7 @@ def femur_comparisons(model_path, target_path):
     away = [pl.ClosestPointDensity(model, back, 1.0, 400).distances(each[-1]).mean() for each in late]
     facts = (
         f"R-hat {pl.r_hat(late).max():.2f}, {pl.effective_sample_size(late).min():.0f} effective samples of "
-        f"{late.shape[0] * late.shape[1]}, acceptance {chains.acceptance.mean():.2f}, {max(away):.2f} mm from the target"
+        f"{late.shape[0] * late.shape[1]}, acceptance {chains.acceptance.mean():.2f}, {max(away):.2f} mm apart"
     )
     return [
         Comparison(

@@ -9,6 +9,7 @@ import pliant as pl
 from pliant.errors import InvalidParameter, NotDifferentiable
 from pliant.shape.bspline_kernel import BSplineKernel
 from pliant.shape.kernel_algebra import Varying, Warped, change_point
+from pliant.shape.kernel_text import parse_kernel
 from pliant.shape.kernels import (
     ExponentialKernel,
     GaussianKernel,
@@ -167,3 +168,11 @@ def test_a_sample_covariance_is_that_of_the_samples(random):
 def test_what_cannot_be_a_kernel_is_refused_by_name(make, words):
     with pytest.raises(InvalidParameter, match=words):
         make()
+
+
+def test_whole_numbers_are_numbers(random):
+    points = random.normal(size=(20, 3))
+    kernel = parse_kernel("gaussian(sigma=3, scale=2) + bspline(4, 1)")
+    same = parse_kernel("gaussian(sigma=3.0, scale=2.0) + bspline(4.0, 1.0)")
+    np.testing.assert_array_equal(kernel.diagonal(points), same.diagonal(points))
+    np.testing.assert_array_equal(kernel(points, points), same(points, points))

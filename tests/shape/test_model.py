@@ -273,7 +273,11 @@ def test_point_clouds_and_lines_are_shapes_too():
         (lambda m: m.marginal([1, 1]), InvalidParameter, "twice"),
         (lambda m: m.transformed(np.eye(3)), InvalidParameter, "affine"),
         (lambda m: m.deformer(np.zeros(1)), InvalidControls, "shape"),
-        (lambda m: m.deformer(interpolation="far")(m.reference), InvalidParameter, "'nearest', 'surface' or 'tetrahedra'"),
+        (
+            lambda m: m.deformer(interpolation="far")(m.reference),
+            InvalidParameter,
+            "'nearest', 'surface' or 'tetrahedra'",
+        ),
         (lambda m: ShapeModel(m.reference, m.mean[:5], m.basis), InvalidMesh, "all must have the same"),
         (lambda m: ShapeModel.from_kernel(m.reference, KERNEL), InvalidParameter, "rank=, or tolerance="),
         (lambda m: ShapeModel.from_kernel(m.reference, KERNEL, rank=0), InvalidParameter, "at least one"),

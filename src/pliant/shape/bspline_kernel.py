@@ -66,7 +66,7 @@ class BSplineKernel(Kernel):
 
     def diagonal(self, x: Floats) -> Floats:
         """(n,) between 0.79 scale² and scale²."""
-        result = np.full(len(x), self.scale**2)
+        result = np.full(len(x), float(self.scale**2))
         for axis in range(3):
             result *= 2 * np.square(_splines(x[:, axis] / self._spacing, 0)[1]).sum(axis=1)
         return result

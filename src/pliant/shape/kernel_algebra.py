@@ -125,7 +125,7 @@ class Varying(Kernel):
 
     def _amplitude(self, x: Floats) -> Floats:
         if not callable(self.amplitude):
-            return np.full(len(x), self.amplitude)
+            return np.full(len(x), float(self.amplitude))
         values = np.asarray(self.amplitude(x), np.float64)
         if values.shape != (len(x),) or not np.isfinite(values).all():
             raise InvalidParameter(f"an amplitude must give one finite number a point; it gave shape {values.shape}")

@@ -106,7 +106,7 @@ class Stationary(Kernel):
 
     def diagonal(self, x: Floats) -> Floats:
         """(n,) scale² everywhere."""
-        return np.full(len(x), self.scale**2)
+        return np.full(len(x), float(self.scale**2))
 
     @abstractmethod
     def profile(self, s: Floats) -> Floats:
