@@ -18,10 +18,8 @@ def main(out: Path, size: tuple[int, int] = (1500, 800)) -> float:
     kernel = pl.GaussianKernel(sigma=0.35 * knot.diagonal, scale=0.06 * knot.diagonal)
     model = pl.ShapeModel.from_kernel(knot, kernel, rank=40)
     panel = (size[0] // 5, size[0] // 5)
-    row = [
-        pl.render(model.reference.with_points(points), size=panel, view="top", up="y")
-        for points in model.sample(5, seed=4)
-    ]
+    shapes = [model.reference.with_points(points) for points in model.sample(5, seed=4)]
+    row = [pl.render(shape, size=panel, view="top", up="y") for shape in shapes]
     plot = scree(model.variances / model.variances.sum(), pl.compactness(model), (5 * panel[0], size[1] - panel[1]))
     Image.fromarray(np.vstack([np.hstack(row), plot])).save(out / "shape_model_samples.png")
     return float(pl.compactness(model)[19])  # the part of the variance in the first twenty fields
@@ -29,17 +27,15 @@ def main(out: Path, size: tuple[int, int] = (1500, 800)) -> float:
 
 def scree(shares: np.ndarray, together: np.ndarray, size: tuple[int, int]) -> np.ndarray:
     """Bars and a line, drawn twice as large and averaged."""
-    width, height = 2 * size[0], 2 * size[1]
-    image = Image.new("RGB", (width, height), "white")
+    image = Image.new("RGB", (2 * size[0], 2 * size[1]), "white")
+    width, height = image.size
     draw = ImageDraw.Draw(image)
-    left, right, top, bottom = 120, width - 120, 60, height - 80
-    step, rise = (right - left) / len(shares), bottom - top
+    left, bottom, rise = 0.04 * width, 0.92 * height, 0.86 * height
+    step = 0.92 * width / len(shares)
     for number, share in enumerate(shares):
         x = left + number * step
         draw.rectangle([x + 0.15 * step, bottom - rise * share / shares[0], x + 0.85 * step, bottom], fill="#7fa7d1")
     line = [(left + (number + 0.5) * step, bottom - rise * part) for number, part in enumerate(together)]
     draw.line(line, fill="#c8553d", width=6, joint="curve")
-    for x, y in line:
-        draw.ellipse([x - 9, y - 9, x + 9, y + 9], fill="#c8553d")
-    draw.line([(left, bottom), (right, bottom)], fill="#444444", width=3)
+    draw.line([(left, bottom), (width - left, bottom)], fill="#444444", width=3)
     return np.asarray(image.resize(size, Image.Resampling.LANCZOS))
