@@ -6,6 +6,7 @@ import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
+from threading import local
 
 CHUNK = 65_536  # points a chunk: 1.5 MB of coordinates, so that a chunk's input and output stay in cache
 
@@ -15,9 +16,16 @@ def processors() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
+_here = local()  # whether this thread is one of the pool's
+
+
+def _begin() -> None:
+    _here.working = True
+
+
 @cache
 def _pool() -> ThreadPoolExecutor:
-    return ThreadPoolExecutor(max_workers=processors(), thread_name_prefix="pliant")
+    return ThreadPoolExecutor(max_workers=processors(), thread_name_prefix="pliant", initializer=_begin)
 
 
 if hasattr(os, "register_at_fork"):
@@ -28,12 +36,12 @@ def for_chunks(work: Callable[[int, int], None], count: int, chunk: int = CHUNK)
     """Call ``work(start, stop)`` for consecutive pieces of ``range(count)``, on all processors.
 
     ``work`` must release the GIL to gain anything, and write to places of its own. Small counts run in the
-    calling thread.
+    calling thread, and so does all that a piece of work starts in turn: the pool never waits for itself.
     """
-    if count <= chunk or processors() == 1:
-        if count:
-            work(0, count)
-        return
     starts = range(0, count, chunk)
+    if len(starts) < 2 or processors() == 1 or getattr(_here, "working", False):
+        for start in starts:
+            work(start, min(start + chunk, count))
+        return
     for done in [_pool().submit(work, start, min(start + chunk, count)) for start in starts]:
         done.result()
