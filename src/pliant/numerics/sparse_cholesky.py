@@ -1,8 +1,8 @@
 """Sparse Cholesky: factor once, solve for many right-hand sides.
 
-SuperLU in its symmetric mode factors, in the order of METIS where pymetis is installed and of minimum degree
-elsewhere. The factor is then kept in dense blocks of our own (:mod:`pliant.numerics.supernodes`): solving is
-several times faster, does not hold the GIL, and the factor pickles.
+The order of elimination (:mod:`pliant.numerics.fill_reducing`) and the matrix's pattern give the shape of the factor
+(:mod:`pliant.numerics.elimination`), which is computed in dense blocks (:mod:`pliant.numerics.fronts`) that solving
+reads in sequence (:mod:`pliant.numerics.supernodes`). Nothing holds the GIL, and the factor pickles.
 """
 
 from __future__ import annotations
@@ -14,13 +14,12 @@ from numpy.typing import NDArray
 from scipy.sparse import csc_array
 
 from pliant.errors import SingularSystem
-from pliant.numerics.fill_reducing import nested_dissection
-from pliant.numerics.one_thread import one_blas_thread
+from pliant.numerics.elimination import Elimination
+from pliant.numerics.fill_reducing import minimum_degree, nested_dissection
 
 Floats = NDArray[np.float64]
 
-_WIDEST = 48  # columns of a block: its part of x stays in the first-level cache
-_NEGLIGIBLE = 1e-13  # a pivot this much smaller than its diagonal entry is rounding
+_OVERREAD = 256  # entries behind the last block that kernels may read, and never use
 
 
 class Cholesky:
@@ -30,8 +29,8 @@ class Cholesky:
     ----------
     matrix
         (n, n) sparse, symmetric: both triangles are given.
-    order
-        (n,) an elimination order found earlier, from :attr:`order`; None = find one.
+    elimination
+        That of a matrix of the same pattern, from :attr:`elimination`; None = find one.
 
     Raises
     ------
@@ -39,21 +38,18 @@ class Cholesky:
         The matrix is not positive definite.
     """
 
-    def __init__(self, matrix: Any, order: NDArray[np.int64] | None = None) -> None:
-        matrix = csc_array(matrix)
+    def __init__(self, matrix: Any, elimination: Elimination | None = None) -> None:
+        matrix = _mirrored(csc_array(matrix))
         self.size: int = matrix.shape[0]
-        self._order_given = nested_dissection(matrix) if order is None else order
-        if self.size:
-            self._factor(matrix)
-
-    @property
-    def order(self) -> NDArray[np.int64] | None:
-        """(n,) the elimination order, for another matrix of the same pattern; None where SuperLU found its own."""
-        return self._order_given
+        if elimination is None or not elimination.fits(matrix):
+            order = nested_dissection(matrix)
+            elimination = Elimination(matrix, minimum_degree(matrix) if order is None else order)
+        self.elimination = elimination
+        self._factor(matrix)
 
     def refactored(self, matrix: Any) -> Cholesky:
-        """Another matrix of the same pattern: the search for an order is saved."""
-        return Cholesky(matrix, self._order_given)
+        """Another matrix: where its pattern is the same, all that the pattern decides is kept."""
+        return Cholesky(matrix, self.elimination)
 
     def solve(self, right: Floats) -> Floats:
         """Solve A x = b.
@@ -72,70 +68,44 @@ class Cholesky:
 
         if not right.size:
             return np.zeros(right.shape)
+        shape = self.elimination
         columns = right.reshape(self.size, -1)
         result = np.empty(columns.shape)
         x = np.zeros((self.size, 3))
         for begin in range(0, columns.shape[1], 3):
             part = columns[:, begin : begin + 3]
-            x[:, : part.shape[1]] = np.take(part, self._places, axis=0)
+            x[:, : part.shape[1]] = np.take(part, shape.order, axis=0)
             supernodes.solve_three(
-                self._first, self._rows, self._row_starts, self._blocks, self._block_starts, self._pivots,
-                self._largest, x.reshape(-1),
+                shape.first, shape.rows, shape.row_starts, self._blocks, shape.block_starts, self._pivots,
+                shape.largest, x.reshape(-1),
             )  # fmt: skip
-            result[:, begin : begin + 3] = np.take(x, self._back, axis=0)[:, : part.shape[1]]
+            result[:, begin : begin + 3] = np.take(x, shape.place, axis=0)[:, : part.shape[1]]
         return result.reshape(right.shape)
 
     def _factor(self, matrix: Any) -> None:
-        from scipy.sparse.linalg import splu
+        from pliant.numerics import fronts
 
-        order = self._order_given
-        ordered = matrix if order is None else csc_array(matrix[order][:, order])
-        if not np.isfinite(ordered.data).all():
+        if not np.isfinite(matrix.data).all():
             raise SingularSystem("the matrix to factor holds numbers that are not finite")
-        try:
-            with one_blas_thread():
-                factors = splu(
-                    ordered,
-                    permc_spec="MMD_AT_PLUS_A" if order is None else "NATURAL",
-                    diag_pivot_thresh=0.0,
-                    options={"SymmetricMode": True},
-                )
-        except RuntimeError as error:
-            raise SingularSystem(f"the matrix of {self.size:,} unknowns is singular: constrain more of them") from error
-        pivots = np.asarray(factors.U.diagonal(), np.float64)
-        places = np.argsort(factors.perm_c)
-        diagonal = ordered.diagonal()[places]
-        weak = np.flatnonzero(~(pivots > _NEGLIGIBLE * np.abs(diagonal)))
-        if len(weak) or not np.array_equal(factors.perm_c, factors.perm_r):
-            found = int(places[weak[0]] if len(weak) else 0)
-            unknown = found if order is None else int(order[found])
+        shape = self.elimination
+        self._blocks = np.zeros(shape.block_starts[-1] + _OVERREAD)
+        self._pivots = matrix.diagonal()[shape.order].astype(np.float64)
+        bad = fronts.factor(
+            shape.pointers, shape.indices, matrix.data.astype(np.float64, copy=False), shape.order, shape.place,
+            shape.first, shape.rows, shape.row_starts, shape.block_starts, shape.child_starts, shape.children,
+            shape.single, shape.starts, shape.lead, np.empty(shape.room), self._blocks, self._pivots,
+        )  # fmt: skip
+        if bad >= 0:
             raise SingularSystem(
-                f"the matrix of {self.size:,} unknowns is not positive definite at unknown {unknown}: "
+                f"the matrix of {self.size:,} unknowns is not positive definite at unknown {shape.order[bad]}: "
                 "constrain more of them"
             )
-        self._pivots = pivots
-        self._places = places if order is None else order[places]
-        self._back = np.argsort(self._places)
-        self._keep(factors.L)
 
-    def _keep(self, lower: Any) -> None:
-        """Cut L, of unit diagonal, into dense blocks."""
-        from pliant.numerics import supernodes
 
-        lower = csc_array(lower)
-        lower.sort_indices()
-        rest = np.ones(lower.nnz, bool)
-        rest[lower.indptr[:-1]] = False  # the diagonal stands first
-        pointers = (lower.indptr - np.arange(self.size + 1)).astype(np.int64)
-        indices, values = lower.indices[rest].astype(np.int32), lower.data[rest]
-        first = np.empty(self.size + 1, np.int64)
-        count = supernodes.find_supernodes(pointers, indices, _WIDEST, first)
-        self._first = first[: count + 1].copy()
-        width, below = np.diff(self._first), np.diff(pointers)[self._first[1:] - 1]
-        self._row_starts = np.concatenate([[0], np.cumsum(below)])
-        self._block_starts = np.concatenate([[0], np.cumsum(width * (width + below))])
-        self._rows, self._blocks = np.empty(self._row_starts[-1], np.int32), np.zeros(self._block_starts[-1])
-        self._largest = int(below.max())
-        supernodes.fill_blocks(
-            pointers, indices, values, self._first, self._rows, self._row_starts, self._blocks, self._block_starts
-        )
+def _mirrored(matrix: csc_array) -> csc_array:
+    """A symmetric matrix with sorted columns; where rounding left an entry without its mirror image, the mean."""
+    turned = csc_array(matrix.T)  # columns come out sorted
+    matrix = csc_array(turned.T)
+    if np.array_equal(matrix.indptr, turned.indptr) and np.array_equal(matrix.indices, turned.indices):
+        return matrix
+    return csc_array((matrix + turned) / 2)

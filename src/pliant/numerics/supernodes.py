@@ -2,6 +2,7 @@
 
 Neighbouring columns of a factor with the same rows below them are a supernode. Its entries are kept without indices,
 so that the factor is read once, in sequence; the rows that it reaches are gathered and scattered once a supernode.
+:mod:`pliant.numerics.elimination` finds them, :mod:`pliant.numerics.fronts` fills them.
 
 Arguments that the kernels share:
 
@@ -21,46 +22,6 @@ import numpy as np
 
 from pliant.numerics.compiling import inlined, kernel
 from pliant.numerics.lanes import get, load, put, spread, store, total
-
-
-@kernel
-def find_supernodes(pointers, indices, widest, first):
-    """How many supernodes the columns of L (without its diagonal, rows sorted) form; ``first`` is filled.
-
-    A wide supernode is cut after ``widest`` columns: the rest of its triangle becomes rows below, eight at a time.
-    """
-    count, columns = 0, len(pointers) - 1
-    for j in range(columns):
-        joined = j > 0 and j - first[count - 1] < widest
-        if joined:
-            start, size = pointers[j - 1], pointers[j] - pointers[j - 1]
-            joined = size == pointers[j + 1] - pointers[j] + 1 and indices[start] == j
-            if joined:
-                for k in range(1, size):
-                    if indices[start + k] != indices[pointers[j] + k - 1]:
-                        joined = False
-                        break
-        if not joined:
-            first[count] = j
-            count += 1
-    first[count] = columns
-    return count
-
-
-@kernel
-def fill_blocks(pointers, indices, values, first, rows, row_starts, blocks, block_starts):
-    """Copy the columns of L into the blocks."""
-    for s in range(len(first) - 1):
-        begin, width, at = first[s], first[s + 1] - first[s], block_starts[s]
-        last, below = pointers[begin + width - 1], row_starts[s + 1] - row_starts[s]
-        for k in range(below):
-            rows[row_starts[s] + k] = indices[last + k]
-        for j in range(width):
-            source = pointers[begin + j]
-            for i in range(j + 1, width):
-                blocks[at + i * width + j] = values[source + i - j - 1]
-            for k in range(below):
-                blocks[at + width * width + j * below + k] = values[source + width - 1 - j + k]
 
 
 @inlined
