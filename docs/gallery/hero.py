@@ -21,9 +21,8 @@ def main(out: Path, size: tuple[int, int] = (520, 600)) -> float:
         pl.render(vase, swaying, color="texture", size=size),
         pl.render(vase, swaying, color="displacement", show=("mesh", "grid"), legend=False, size=size),
     ]
-    picture = np.hstack(panels)
-    Image.fromarray(picture).save(out / "hero.png", optimize=True)
-    return picture.shape[1] / picture.shape[0]
+    Image.fromarray(np.hstack(panels)).save(out / "hero.png", optimize=True)
+    return float(len(panels))
 
 
 if __name__ == "__main__":
