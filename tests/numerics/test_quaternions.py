@@ -52,7 +52,8 @@ def test_agrees_with_the_qform_of_nifti(axes):
     header.set_qform(affine, code=1)
     bcd = np.array([header[f"quatern_{name}"] for name in "bcd"], np.float64)
     ours = axes_of(float(header["pixdim"][0]), bcd)
-    assert np.abs(ours - header.get_qform()[:3, :3]).max() < 1e-6
+    bound = 1e-6 if 1 - (bcd**2).sum() > 1e-3 else 2e-3  # near half turns the root of a rounding error is what is left
+    assert np.abs(ours - header.get_qform()[:3, :3]).max() < bound
 
 
 @pytest.mark.parametrize("bcd", [(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1), (0.6, 0.8, 0), (1, 1e-4, 0)])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import igl
 import numpy as np
 import pytest
 from hypothesis import given, settings
@@ -228,3 +229,19 @@ def test_an_unused_vertex_stays_and_a_handle_may_be_all():
     assert np.array_equal(bound.deform(bound.rest + 1)[-1], [9, 9, 9])
     goal = MESH.points * 2
     assert np.array_equal(ARAP(EVERYTHING, EVERYTHING, goal=goal)(MESH).points, goal)
+
+
+def test_libigl_converges_to_the_same_shape():
+    smooth = tube(bumps=0.0)
+    height = smooth.points[:, 2]
+    roi, handle = np.flatnonzero(height > 1.0), np.flatnonzero(height > 3.3)
+    bound = ARAP(roi, handle, tolerance=1e-14, iterations=5000).bind(smooth)
+    goal = bound.rest + [0.3, 0.1, -0.2]
+    fixed = np.setdiff1d(np.arange(len(smooth.points)), bound.constraints.free)
+    places = smooth.points.copy()
+    places[handle] = goal
+    data = igl.ARAPData()
+    data.max_iter, data.energy = 5000, igl.ARAPEnergyType.ARAP_ENERGY_TYPE_SPOKES
+    igl.arap_precomputation(smooth.points, smooth.triangles.astype(np.int64), 3, fixed.astype(np.int32), data)
+    theirs = igl.arap_solve(np.ascontiguousarray(places[fixed]), data, smooth.points.copy())
+    assert np.abs(theirs - bound.deform(goal)).max() < 1e-3  # across right angles weights are 1e-4 here, 0 there
