@@ -16,7 +16,7 @@ from pliant.space.affine import Affine
 
 
 @dataclass(frozen=True, eq=False)
-class StackMap(SpaceDeformer):
+class _StackMap(SpaceDeformer):
     """Layers of a stack that are maps of space, one after another.
 
     Parameters
@@ -35,8 +35,8 @@ class StackMap(SpaceDeformer):
     def controls(self) -> Controls:
         return self.stack.controls
 
-    def moved(self, controls: ArrayLike) -> StackMap:
-        return StackMap(self.stack.moved(controls))
+    def moved(self, controls: ArrayLike) -> _StackMap:
+        return _StackMap(self.stack.moved(controls))
 
     def bind(self, target: Target) -> StackBinding:
         return self.stack.bind(as_points(target))
@@ -67,4 +67,4 @@ def space_map(stack: Stack) -> SpaceDeformer:
     if len(active) == 1 and only.envelope == 1.0:
         assert isinstance(only.deformer, SpaceDeformer)
         return only.deformer
-    return StackMap(stack)
+    return _StackMap(stack)
