@@ -37,6 +37,7 @@ ROOMS = {
     "batch": "Batches",
     "shapes": "Solids",
     "cad": "Parts from CAD",
+    "studio": "The studio",
 }
 
 
@@ -135,10 +136,11 @@ def public_names() -> list[tuple[str, str]]:
 def _imported(path: Path) -> list[tuple[str, str]]:
     """The names that a file hands on, each with its module as seen from pliant; rooms have none."""
     tree = ast.parse(path.read_text(encoding="utf-8"))
-    imports = [node for node in tree.body if isinstance(node, ast.ImportFrom)]
+    imports = [node for node in ast.walk(tree) if isinstance(node, ast.ImportFrom)]
     return [
         ((node.module or "").removeprefix("pliant."), alias.asname or alias.name)
         for node in imports
+        if node.level or (node.module or "").startswith("pliant.")
         for alias in node.names
     ]
 
