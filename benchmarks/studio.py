@@ -22,20 +22,12 @@ from pliant.space.bspline_ffd import BSplineFFD
 from pliant.studio.launching import launch
 from pliant.studio.samples import torus
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "studio"))
+from browser import FLAGS
+
 SIZES = {"35k": (268, 131), "200k": (640, 313), "1M": (1430, 700)}
 LATTICES = ((8, 8, 8), (4, 4, 4))
 GOALS = {("35k", (8, 8, 8)): "2 ms, 150 kB, 40 ms", ("200k", (8, 8, 8)): "6 ms, 800 kB, 80 ms"}
-FLAGS = [
-    "--no-sandbox",
-    "--use-gl=angle",
-    "--use-angle=swiftshader",
-    "--enable-unsafe-swiftshader",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-]
 
 
 class Page:

@@ -112,7 +112,7 @@ class SpaceDeformer(Deformer):
         jacobian = self.jacobian(mesh.points)
         if mesh.normals is None:
             return carry_normals(jacobian, np.asarray(stored, np.float64))
-        return _carry_corners(jacobian, mesh.normals, mesh.faces.flat)
+        return carry_corners(jacobian, mesh.normals, mesh.faces.flat)
 
 
 class MeshDeformer(Deformer):
@@ -271,7 +271,7 @@ def require_finite(points: Points, what: str) -> Points:
     return points
 
 
-def _carry_corners(jacobian: NDArray[np.float64], normals: CornerValues, vertices: NDArray[np.int32]) -> CornerValues:
+def carry_corners(jacobian: NDArray[np.float64], normals: CornerValues, vertices: NDArray[np.int32]) -> CornerValues:
     """Corner normals after a deformation; the pool keeps its layout where each entry has one image."""
     used = np.flatnonzero(normals.indices >= 0)
     pairs = np.stack([normals.indices[used], vertices[used]], axis=1)

@@ -16,7 +16,7 @@ from pliant.deformer import (
     MeshDeformer,
     SpaceDeformer,
     Target,
-    _carry_corners,
+    carry_corners,
     checked_controls,
 )
 from pliant.errors import InvalidParameter, NotDifferentiable
@@ -215,7 +215,7 @@ class Stack(Deformer):
             return shading_normals(mesh, points)
         if mesh.normals is None:
             return carry_normals(jacobian, np.asarray(mesh.vertex_attributes["normals"], np.float64))
-        return _carry_corners(jacobian, mesh.normals, mesh.faces.flat)
+        return carry_corners(jacobian, mesh.normals, mesh.faces.flat)
 
 
 def controls_shape(deformer: Deformer) -> tuple[int, ...]:

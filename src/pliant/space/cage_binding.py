@@ -11,12 +11,13 @@ from scipy.sparse.linalg import LinearOperator, aslinearoperator
 from pliant.deformer import Controls, Drag, LinearBinding, checked_controls, checked_out, require_finite
 from pliant.mesh import Points
 from pliant.space.coordinates.table import WeightTable
+from pliant.space.point_binding import PointBinding
 from pliant.space.sparse import _rows as changed_rows
 
 Indices = NDArray[np.int64]
 
 
-class CageBinding(LinearBinding):
+class CageBinding(PointBinding, LinearBinding):
     """x' = x + W (c - c_rest).
 
     Parameters
@@ -30,21 +31,8 @@ class CageBinding(LinearBinding):
     """
 
     def __init__(self, points: Points, table: WeightTable, rest: Controls, controls: Controls) -> None:
-        self._points, self.table, self._rest, self._controls = points, table, rest, controls
-
-    @property
-    def rest(self) -> Controls:
-        """(m, 3) the cage's vertices at rest."""
-        return self._rest
-
-    @property
-    def controls(self) -> Controls:
-        """(m, 3) the cage's vertices when it was bound."""
-        return self._controls
-
-    @property
-    def points(self) -> Points:
-        return self._points
+        super().__init__(points, rest, controls)
+        self.table = table
 
     def deform(self, controls: ArrayLike | None = None, out: Points | None = None) -> Points:
         target = checked_out(out, len(self._points))

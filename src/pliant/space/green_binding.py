@@ -8,17 +8,18 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import csr_array
 
-from pliant.deformer import Binding, Controls, checked_controls, checked_out, require_finite
+from pliant.deformer import Controls, checked_controls, checked_out, require_finite
 from pliant.mesh import Points
 from pliant.numerics.stretches import StretchedNormals
 from pliant.space.cage_binding import CageDrag
 from pliant.space.coordinates.table import WeightTable
+from pliant.space.point_binding import PointBinding
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
 
 
-class GreenBinding(Binding):
+class GreenBinding(PointBinding):
     """x' = x + phi (c - c_rest) + psi (N(c) - N(c_rest)), where N are the faces' normals times their stretches.
 
     It is not linear: a face's normal turns with its vertices.
@@ -46,23 +47,9 @@ class GreenBinding(Binding):
         rest: Controls,
         controls: Controls,
     ) -> None:
-        self._points, self.tables, self._normals, self._prolongation = points, tables, normals, prolongation
-        self._rest, self._controls = rest, controls
+        super().__init__(points, rest, controls)
+        self.tables, self._normals, self._prolongation = tables, normals, prolongation
         self._rest_normals = normals.at(self._prolonged(rest))
-
-    @property
-    def rest(self) -> Controls:
-        """(m, 3) the cage's vertices at rest."""
-        return self._rest
-
-    @property
-    def controls(self) -> Controls:
-        """(m, 3) the cage's vertices when it was bound."""
-        return self._controls
-
-    @property
-    def points(self) -> Points:
-        return self._points
 
     def deform(self, controls: ArrayLike | None = None, out: Points | None = None) -> Points:
         given = self._checked(controls)

@@ -30,6 +30,7 @@ from pliant.numerics.radial import RadialBasis
 from pliant.numerics.ragged import frozen
 from pliant.space.landmark_system import LandmarkSystem
 from pliant.space.lattice import by_threes
+from pliant.space.point_binding import PointBinding
 
 Floats = NDArray[np.float64]
 
@@ -113,26 +114,12 @@ class LandmarkWarp(SpaceDeformer):
         """(4, d) polynomials that the warp reproduces: coefficients of x, y, z and 1."""
 
 
-class LandmarkBinding(LinearBinding):
+class LandmarkBinding(PointBinding, LinearBinding):
     """Points bound to landmarks: linear in where the landmarks are."""
 
     def __init__(self, system: LandmarkSystem, points: Points, rest: Controls, controls: Controls) -> None:
-        self._system, self._points, self._rest, self._controls = system, points, rest, controls
-
-    @property
-    def rest(self) -> Controls:
-        """(k, 3) the landmarks."""
-        return self._rest
-
-    @property
-    def controls(self) -> Controls:
-        """(k, 3) the targets when it was bound."""
-        return self._controls
-
-    @property
-    def points(self) -> Points:
-        """(n, 3) the target's points, read-only."""
-        return self._points
+        super().__init__(points, rest, controls)
+        self._system = system
 
     def deform(self, controls: ArrayLike | None = None, out: Points | None = None) -> Points:
         """(n, 3) the warped points."""
