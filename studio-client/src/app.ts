@@ -1,8 +1,6 @@
 // The studio put together: canvas in the middle, modes on the left, the inspector on the right.
 
-import "./modes/look";
-import "./modes/points";
-import "./modes/pull";
+import "./modes";
 import "./style/index.css";
 import { h, replace } from "./core/dom";
 import { icon } from "./core/icons";

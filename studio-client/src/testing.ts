@@ -3,6 +3,7 @@
 import { Vector3 } from "three";
 import type { App } from "./app";
 import { latencies } from "./modes/layer_drag";
+import type { Probe } from "./modes/mode";
 import type { PointsMode } from "./modes/points";
 
 export interface TestHandle {
@@ -21,6 +22,7 @@ export interface TestHandle {
   pixels: (x: number, y: number, width: number, height: number) => number[];
   look: (x: number, y: number, z: number) => void;
   mode: (id: string) => void;
+  probes: Record<string, Probe>;
   skipDrawing: (skip: boolean) => void;
   drag: (index: number, moves: number, step: [number, number, number]) => Promise<void>;
 }
@@ -62,6 +64,7 @@ export function exposeForTests({ studio, modes, setMode }: App): void {
     },
     look: (x, y, z) => studio.frame(undefined, new Vector3(x, y, z)),
     mode: setMode,
+    probes: Object.fromEntries(modes.flatMap((mode) => (mode.probe ? [[mode.id, mode.probe]] : []))),
     skipDrawing: (skip) => {
       viewport.skipDrawing = skip;
     },

@@ -14,6 +14,8 @@ export interface Pointer {
   touch: boolean;
 }
 
+export type Probe = Record<string, (...values: never[]) => unknown>;
+
 export interface Mode {
   readonly id: string;
   readonly icon: IconName;
@@ -35,6 +37,8 @@ export interface Mode {
   panel?(): { title: StringKey; body: HTMLElement };
   /** The box of what is selected, to be framed. */
   selectionBox?(): import("three").Box3 | null;
+  /** What tests in a browser read of the mode: `window.pliantStudio.probes[id]`. */
+  readonly probe?: Probe;
 }
 
 export type ModeMaker = (studio: Studio) => Mode;

@@ -1,8 +1,8 @@
-// Every string that the studio says, in each of its languages. A page in another language needs one more column.
+// What every part of the studio says.
 
-import type { Language } from "./settings";
+import type { Strings } from "./strings";
 
-const TABLE = {
+export const COMMON = {
   untitled: ["Untitled", "未命名"],
   unsaved: ["edited", "已修改"],
   // commands
@@ -247,29 +247,4 @@ const TABLE = {
   key_undo: ["Undo, redo", "撤销 / 重做"],
   key_save: ["Save the project", "保存项目"],
   key_help: ["This sheet", "本帮助"],
-} as const satisfies Record<string, readonly [string, string]>;
-
-export type StringKey = keyof typeof TABLE;
-
-let column = 0;
-
-export function setLanguage(language: Language): void {
-  column = language === "zh-CN" ? 1 : 0;
-}
-
-/** A string of the table, in the language of the page. */
-export function t(key: StringKey): string {
-  return TABLE[key][column]!;
-}
-
-/** A string whose key is made of a prefix and a word; the word itself where the table has none. */
-export function tWord(prefix: string, word: string): string {
-  const key = `${prefix}${word}`;
-  return key in TABLE ? t(key as StringKey) : word;
-}
-
-export const ALL_KEYS = Object.keys(TABLE) as StringKey[];
-
-export function inLanguages(key: StringKey): readonly [string, string] {
-  return TABLE[key];
-}
+} as const satisfies Strings;

@@ -1,0 +1,33 @@
+// Every string that the studio says, in each of its languages: one table, made of a part a room.
+// A page in another language needs one more column.
+
+import type { Language } from "../settings";
+import { COMMON } from "./common";
+import type { Strings } from "./strings";
+
+const TABLE = { ...COMMON } as const satisfies Strings;
+
+export type StringKey = keyof typeof TABLE;
+
+let column = 0;
+
+export function setLanguage(language: Language): void {
+  column = language === "zh-CN" ? 1 : 0;
+}
+
+/** A string of the table, in the language of the page. */
+export function t(key: StringKey): string {
+  return TABLE[key][column]!;
+}
+
+/** A string whose key is made of a prefix and a word; the word itself where the table has none. */
+export function tWord(prefix: string, word: string): string {
+  const key = `${prefix}${word}`;
+  return key in TABLE ? t(key as StringKey) : word;
+}
+
+export const ALL_KEYS = Object.keys(TABLE) as StringKey[];
+
+export function inLanguages(key: StringKey): readonly [string, string] {
+  return TABLE[key];
+}

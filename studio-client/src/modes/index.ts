@@ -1,0 +1,5 @@
+// The modes, in the order of the rail.
+
+import "./look";
+import "./points";
+import "./pull";
