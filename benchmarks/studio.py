@@ -89,7 +89,7 @@ def in_the_browser(browser, size, shape, moves=60):
         context = browser.new_context(viewport={"width": 1280, "height": 800})
         page = context.new_page()
         began = time.perf_counter()
-        page.goto(f"{studio.url}&antialias=off")
+        page.goto(f"{studio.url}&antialias=off&guides=off")
         while not page.evaluate("window.pliantStudio && window.pliantStudio.controlPoint(0) !== null"):
             time.sleep(0.01)
         opened = time.perf_counter() - began

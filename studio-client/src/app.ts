@@ -20,6 +20,7 @@ import { propertiesPanel } from "./panels/properties";
 import { startPage } from "./panels/start";
 import { statusBar } from "./panels/status";
 import { topBar } from "./panels/topbar";
+import { Tours } from "./panels/tour";
 import { Compare, viewTools } from "./panels/view_tools";
 import { Studio } from "./studio";
 import type { Transport } from "./transport/transport";
@@ -32,12 +33,17 @@ export interface App {
   close: () => void;
 }
 
-export function mount(root: HTMLElement, transport: Transport, antialias = true): App {
+export interface AppOptions {
+  antialias?: boolean;
+  /** Whether modes explain themselves when they are entered for the first time. */
+  guides?: boolean;
+}
+
+export function mount(root: HTMLElement, transport: Transport, { antialias = true, guides = false }: AppOptions = {}): App {
   root.classList.add("studio");
   const studio = new Studio(transport, { antialias, root });
   const progress = new Progress(studio.session);
   const opening = new Opening(studio, progress);
-  const actions = new Actions(studio, opening);
   const compare = new Compare(studio);
   const modes = makeModes(studio);
   const field = new FieldPanel(studio);
@@ -48,6 +54,9 @@ export function mount(root: HTMLElement, transport: Transport, antialias = true)
     studio.mode.set(next);
     next.enter();
   };
+
+  const tours = new Tours(studio, modes, setMode, guides);
+  const actions = new Actions(studio, opening, tours);
 
   const build = (): void => {
     setLanguage(studio.settings.now.language);
@@ -65,9 +74,11 @@ export function mount(root: HTMLElement, transport: Transport, antialias = true)
       ),
       statusBar(studio),
       studio.toasts.element,
+      tours.element,
     );
     field.rebuild();
     studio.session.scene.notify();
+    tours.refresh();
   };
   build();
   let language = studio.settings.now.language;

@@ -14,7 +14,8 @@ address.search = "";
 
 document.body.classList.add("page");
 try {
-  const app = mount(document.body, new WebSocketTransport(address.href), parameters.get("antialias") !== "off");
+  const on = (name: string): boolean => parameters.get(name) !== "off";
+  const app = mount(document.body, new WebSocketTransport(address.href), { antialias: on("antialias"), guides: on("guides") });
   exposeForTests(app);
 } catch (error) {
   document.body.replaceChildren(h("p", { class: "fatal" }, `${t("noWebGL")} ${error instanceof Error ? error.message : ""}`));

@@ -78,7 +78,7 @@ def view(browser, usual):
         page.set_default_timeout(15_000)
         page.on("pageerror", lambda error: complaints.append(str(error)))
         page.on("console", lambda said: complaints.append(said.text) if said.type == "error" else None)
-        page.goto(f"{studio.url}&antialias=off")
+        page.goto(f"{studio.url}&antialias=off&guides=off")
         return View(page, studio, complaints)
 
     yield look

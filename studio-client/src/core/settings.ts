@@ -15,6 +15,9 @@ export interface Settings {
   ground: boolean;
   orthographic: boolean;
   up: "y" | "z";
+  /** Whether modes that are new to this person explain themselves, and which have. */
+  guides: boolean;
+  guided: string[];
 }
 
 const KEY = "pliant-studio";
@@ -28,6 +31,8 @@ const DEFAULTS: Settings = {
   ground: true,
   orthographic: false,
   up: "z",
+  guides: true,
+  guided: [],
 };
 
 export class SettingsStore {

@@ -10,4 +10,9 @@ registerMode(() => ({
   shortcut: "1",
   enter: () => undefined,
   leave: () => undefined,
+  tour: () => [
+    { title: "tourLookTurn", text: "tourLookTurnText" },
+    { at: ".axis-gizmo", title: "tourLookAxes", text: "tourLookAxesText" },
+    { at: ".view-tools", title: "tourLookCompare", text: "tourLookCompareText" },
+  ],
 }));

@@ -2,6 +2,7 @@
 
 import type { IconName } from "../core/icons";
 import type { StringKey } from "../core/strings";
+import type { TourStep } from "../panels/tour";
 import type { Studio } from "../studio";
 
 /** Where the pointer is on the canvas, in CSS pixels from its upper left corner. */
@@ -35,6 +36,8 @@ export interface Mode {
   toolbar?(): HTMLElement;
   /** A section of the inspector. */
   panel?(): { title: StringKey; body: HTMLElement };
+  /** The steps of its first-run guide. */
+  tour?(): TourStep[];
   /** The box of what is selected, to be framed. */
   selectionBox?(): import("three").Box3 | null;
   /** What tests in a browser read of the mode: `window.pliantStudio.probes[id]`. */

@@ -1,6 +1,7 @@
 // Control points by hand: of a lattice, of sites, of a cage: of any deformer whose controls are positions.
 
 import { Plane, Vector3 } from "three";
+import type { TourStep } from "../panels/tour";
 import type { Studio } from "../studio";
 import { Gizmo } from "../view/gizmo";
 import { Handles } from "../view/handles";
@@ -83,6 +84,15 @@ export class PointsMode implements Mode {
 
   panel(): { title: "selection"; body: HTMLElement } {
     return { title: "selection", body: this.side.element };
+  }
+
+  tour(): TourStep[] {
+    return [
+      { title: "tourPointsDrag", text: "tourPointsDragText" },
+      { at: ".stage-top .toolbar", title: "tourPointsTools", text: "tourPointsToolsText" },
+      { at: '[data-section="layers"]', title: "tourPointsLayers", text: "tourPointsLayersText" },
+      { at: '[data-section="history"]', title: "tourPointsHistory", text: "tourPointsHistoryText" },
+    ];
   }
 
   selectionBox(): import("three").Box3 | null {

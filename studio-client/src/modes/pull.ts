@@ -1,6 +1,7 @@
 // Direct manipulation: a point of the surface is dragged, and the control points follow.
 
 import { Plane, Vector3 } from "three";
+import type { TourStep } from "../panels/tour";
 import type { Studio } from "../studio";
 import { Handles } from "../view/handles";
 import { LayerDrag } from "./layer_drag";
@@ -77,6 +78,13 @@ class PullMode implements Mode {
     void this.drag.cancel();
     this.drag = null;
     return true;
+  }
+
+  tour(): TourStep[] {
+    return [
+      { title: "tourPullSurface", text: "tourPullSurfaceText" },
+      { at: '[data-section="layers"]', title: "tourPullEscape", text: "tourPullEscapeText" },
+    ];
   }
 
   private showControls(now: Float64Array): void {

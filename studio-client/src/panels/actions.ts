@@ -7,11 +7,13 @@ import { openMenu } from "./deformer_menu";
 import { openExport } from "./export_dialog";
 import { openHelp } from "./help";
 import type { Opening } from "./opening";
+import type { Tours } from "./tour";
 
 export class Actions {
   constructor(
     private readonly studio: Studio,
     private readonly opening: Opening,
+    private readonly tours: Tours,
   ) {}
 
   undo(): void {
@@ -31,7 +33,7 @@ export class Actions {
   }
 
   help(): void {
-    openHelp(this.studio);
+    openHelp(this.studio, this.tours);
   }
 
   openMenu(anchor: HTMLElement): void {

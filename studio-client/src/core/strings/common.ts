@@ -235,7 +235,7 @@ export const COMMON = {
   key_frame: ["Frame the selection or all", "居中所选或全部"],
   key_ortho: ["Perspective or orthographic", "透视 / 正交"],
   key_compare: ["Hold: the original shape", "按住：原始形状"],
-  key_modes: ["Look, control points, pull", "浏览、控制点、拖动曲面"],
+  key_modes: ["The modes of the rail", "左侧栏中的各模式"],
   key_tools: ["Move, rotate, scale", "移动、旋转、缩放"],
   key_axis: ["Lock a drag to an axis; again: free", "锁定拖动轴；再按取消"],
   key_rectangle: ["Rectangle selection", "框选"],

@@ -4,8 +4,9 @@
 import type { Language } from "../settings";
 import { COMMON } from "./common";
 import type { Strings } from "./strings";
+import { TOUR } from "./tour";
 
-const TABLE = { ...COMMON } as const satisfies Strings;
+const TABLE = { ...COMMON, ...TOUR } as const satisfies Strings;
 
 export type StringKey = keyof typeof TABLE;
 
