@@ -15,6 +15,16 @@ import { FieldView } from "./view/field_view";
 import { MeshView } from "./view/mesh_view";
 import { Viewport } from "./view/viewport";
 
+/** Numbers at the points that a mode paints the surface with, and the colours that they stand for. */
+export interface Paint {
+  title: string;
+  unit: string;
+  low: number;
+  high: number;
+  values: Float32Array;
+  table: Numbers;
+}
+
 export interface StudioOptions {
   antialias: boolean;
   /** Where the page's theme is set. */
@@ -33,6 +43,8 @@ export class Studio {
   /** The mesh has been drawn anew, or some of its points have moved. */
   readonly meshLoaded = new Signal(0);
   readonly pointsMoved = new Signal(0);
+  /** What a mode paints the surface with, in place of the field's colours. */
+  readonly paint = new Signal<Paint | null>(null);
   readonly root: HTMLElement;
 
   constructor(transport: Transport, options: StudioOptions) {

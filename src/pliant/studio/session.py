@@ -57,6 +57,7 @@ class Session:
         self.dragging: Dragging | None = None
         self.name, self.revision, self.saved = name, 0, 0
         self.locked: dict[str, set[int]] = {}
+        self.beside: dict[str, Any] = {}  # what modes keep beside the scene, by their names: forgotten with it
         self.clients: list[Client] = []
         self.jobs = Jobs(self)
         self.worker = ThreadPoolExecutor(1, "pliant-studio")
@@ -137,7 +138,7 @@ class Session:
         self.drop_drag()
         stage = Stage(scene)
         self.history, self.stage = History(Entry(scene, key, name)), stage
-        self.name, self.locked = name, {}
+        self.name, self.locked, self.beside = name, {}, {}
         self.revision += 1
         self.saved = self.revision
         self._tell_scene(self.clients)
@@ -148,7 +149,7 @@ class Session:
         """Back to the start page."""
         self.drop_drag()
         self.history = self.stage = None
-        self.name = ""
+        self.name, self.beside = "", {}
         self.revision += 1
         self.saved = self.revision
         if self.autosave is not None:

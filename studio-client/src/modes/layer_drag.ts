@@ -20,7 +20,8 @@ export class LayerDrag {
 
   constructor(
     private readonly studio: Studio,
-    private readonly prefix: "drag" | "pull" | "preview",
+    /** Of the commands `begin`, `move`, `commit` and `cancel`. */
+    private readonly prefix: string,
     begin: Record<string, unknown>,
     private readonly onAnswer: (arrays: Record<string, Numbers>) => void = () => undefined,
   ) {

@@ -6,7 +6,7 @@ import { icon } from "../core/icons";
 import { Signal } from "../core/signal";
 import { t, tWord, type StringKey } from "../core/strings";
 import { Latest } from "../transport/latest";
-import type { Studio } from "../studio";
+import type { Paint, Studio } from "../studio";
 import type { Frame } from "../transport/frame";
 import { button, checkbox, numberField, row, segments, select, setNumber, slider } from "./controls";
 import { Legend } from "./legend";
@@ -42,6 +42,7 @@ export class FieldPanel {
     color: "material",
   });
   private fold: Fold = { status: "none" };
+  private painted: readonly [Paint, number] | null = null;
   private range: [number, number] | null = null; // null = as the values are
   private found: [number, number] = [0, 1];
   private readonly foldLine = h("div", { class: "fold" });
@@ -52,6 +53,7 @@ export class FieldPanel {
     this.choice.onChange(() => this.refresh());
     studio.session.scene.onChange(() => this.refresh());
     studio.pointsMoved.onChange(() => this.refresh());
+    studio.paint.onChange(() => this.refresh());
     studio.session.on("fold", (frame) => this.showFold(frame.head["fold"] as Fold));
     this.build();
   }
@@ -113,12 +115,14 @@ export class FieldPanel {
     const { studio } = this;
     const { lines, density, slice, at, inside, arrows, color } = this.choice.value;
     if (!studio.scene?.mesh) return;
-    const colored = color !== "material";
+    const own = studio.paint.value;
+    const colored = !own && color !== "material";
     const grid = lines ? await studio.ask("field.lines", { density, slice, at, inside }) : null;
     const pins = arrows ? await studio.ask("field.arrows", { density }) : null;
     const paint = colored ? await studio.ask("field.color", { quantity: color }) : null;
     studio.field.setLines((grid?.arrays["points"] as Float32Array) ?? null, (grid?.arrays["offsets"] as Uint32Array) ?? new Uint32Array());
-    this.showColors(colored ? paint : null);
+    if (own) this.showPaint(own);
+    else this.showColors(colored ? paint : null);
     const table = (pins?.arrays["table"] as Uint8Array) ?? new Uint8Array();
     studio.field.setArrows(
       (pins?.arrays["positions"] as Float32Array) ?? null,
@@ -129,7 +133,22 @@ export class FieldPanel {
     studio.viewport.request();
   }
 
+  /** What a mode paints with: taken once, since it does not follow the points. */
+  private showPaint(paint: Paint): void {
+    const { mesh, meshLoaded } = this.studio;
+    const key = [paint, meshLoaded.value] as const;
+    if (this.painted?.[0] === key[0] && this.painted[1] === key[1]) return;
+    this.painted = key;
+    this.legend.element.hidden = false;
+    this.rangeRow.hidden = true;
+    mesh.colorMap.setTable(paint.table);
+    mesh.colorMap.setRange(paint.low, paint.high);
+    this.legend.show(paint.title, paint.unit, paint.low, paint.high, mesh.colorMap.table);
+    mesh.setScalars(paint.values);
+  }
+
   private showColors(paint: Frame | null): void {
+    this.painted = null;
     const { mesh } = this.studio;
     this.legend.element.hidden = !paint;
     this.rangeRow.hidden = !paint;
