@@ -123,6 +123,11 @@ class AxialDeformer(SpaceDeformer):
     def jacobian(self, points: ArrayLike) -> Floats:
         return jacobians(as_points(points, borrow=True), self._frame, self._entries, self._slopes, self.radial)
 
+    @property
+    def frame(self) -> Floats:
+        """(3, 4) maps positions to (u, v, s): across the axis from the origin; along it, as bounds are measured."""
+        return self._frame
+
     @abstractmethod
     def _table(self, q: Floats, numbers: Numbers) -> Entries:
         """The displacement of the sections q, see :mod:`pliant.numerics.sections`, for (p,) numbers.

@@ -1,6 +1,7 @@
 """What pages can ask for: small functions, registered by name when this package is imported."""
 
 from pliant.studio.commands import (
+    axial,
     dragging,
     exporting,
     fields,
@@ -12,4 +13,4 @@ from pliant.studio.commands import (
     transforms,
 )
 
-__all__ = ["dragging", "exporting", "fields", "history", "layers", "meshes", "opening", "points", "transforms"]
+__all__ = ["axial", "dragging", "exporting", "fields", "history", "layers", "meshes", "opening", "points", "transforms"]
