@@ -3,3 +3,4 @@
 import "./look";
 import "./points";
 import "./pull";
+import "./axial";

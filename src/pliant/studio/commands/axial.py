@@ -22,6 +22,8 @@ from pliant.studio.frames import Frame
 from pliant.studio.request import Client, Request, command
 from pliant.studio.session import Session
 
+_PARALLEL = 0.05
+
 
 class HandleDrag(Dragging):
     """A handle follows the pointer."""
@@ -81,8 +83,7 @@ def fit(session: Session, request: Request) -> None:
     if not holds(deformer):
         raise InvalidParameter(f"layer {name!r} has no axis")
     if isinstance(deformer, AxialDeformer):
-        fields: dict[str, Any] = {"axis": request.text("axis")} if "axis" in request.values else {}
-        turned = replace(deformer, **fields)
+        turned = _along(deformer, request.text("axis")) if "axis" in request.values else deformer
         own = {key: getattr(turned, key) for key in ("axis", "normal") if hasattr(turned, key)}
         laid = type(deformer).around(given, **own)
         middle: dict[str, Any] = {"center": None} if hasattr(turned, "center") else {}
@@ -91,6 +92,15 @@ def fit(session: Session, request: Request) -> None:
         fitted = replace(deformer, origin=type(deformer).around(given).origin)  # type: ignore[attr-defined, type-var]
     session.drop_drag()
     session.commit(session.required.replace(stack=stack.replace(name, deformer=fitted)), "fit", name)
+
+
+def _along(deformer: AxialDeformer, axis: str) -> AxialDeformer:
+    """A deformer about another axis; a normal that would be parallel to it gives way."""
+    normal = getattr(deformer, "normal", None)
+    if normal is None or np.linalg.norm(np.cross(unit_axis(normal), unit_axis(axis))) > _PARALLEL:
+        return replace(deformer, axis=axis)  # type: ignore[arg-type]
+    fields: dict[str, Any] = {"axis": axis, "normal": "zx"["z" == axis]}
+    return replace(deformer, **fields)
 
 
 def _tool(session: Session, stack: Stack, layer: str) -> Tool:

@@ -2,11 +2,12 @@
 // A page in another language needs one more column.
 
 import type { Language } from "../settings";
+import { AXIAL } from "./axial";
 import { COMMON } from "./common";
 import type { Strings } from "./strings";
 import { TOUR } from "./tour";
 
-const TABLE = { ...COMMON, ...TOUR } as const satisfies Strings;
+const TABLE = { ...COMMON, ...AXIAL, ...TOUR } as const satisfies Strings;
 
 export type StringKey = keyof typeof TABLE;
 
