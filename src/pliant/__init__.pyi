@@ -22,6 +22,8 @@ from .face.face import faces_from_photo as faces_from_photo
 from .face.handles import FaceHandles as FaceHandles
 from .face.landmarks import NoFace as NoFace
 from .face.topology import mean_face as mean_face
+from .field.areas import area as area
+from .field.areas import area_gradient as area_gradient
 from .field.blocks import deformed_volume as deformed_volume
 from .field.certificate import Certificate as Certificate
 from .field.certifying import certify as certify
@@ -76,6 +78,7 @@ from .scene.template_library import template as template
 from .scene.template_library import templates as templates
 from .shape.bspline_kernel import BSplineKernel as BSplineKernel
 from .shape.closest_point_chain import ClosestPointDensity as ClosestPointDensity
+from .shape.conditioned_model import ConditionedModel as ConditionedModel
 from .shape.densities import CachedDensity as CachedDensity
 from .shape.densities import ProductDensity as ProductDensity
 from .shape.diagnostics import effective_sample_size as effective_sample_size

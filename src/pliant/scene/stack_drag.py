@@ -7,10 +7,11 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pliant.deformer import Controls
+from pliant.deformer import Controls, Drag
 from pliant.mesh import Points, PolygonMesh
 from pliant.scene.frames import turned
 from pliant.scene.layer import Layer, blended
+from pliant.scene.stack_step import controls_of
 
 if TYPE_CHECKING:
     from pliant.scene.stack import Stack
@@ -33,9 +34,7 @@ class LayerDrag:
     def __init__(self, binding: StackBinding, name: str) -> None:
         self._binding, self._layer = binding, binding.stack[name]
         inner = binding.bound(name)
-        self._controls = inner._checked(None if self._layer.in_space else _goal(self._layer)).copy()
-        if self._layer.in_space:
-            self._controls = self._layer.deformer.controls.copy()
+        self._controls = np.array(controls_of(self._layer, inner))
         self._drag = inner.drag(self._controls)
         self._heard = self._layer in binding.stack.active
         self._result = np.array(binding.result)
@@ -48,6 +47,8 @@ class LayerDrag:
         added = self._binding.stack.mode == "add"
         mesh = self._binding.target
         first = _Stage(self._layer, steps[place].at, steps[place].below, np.array(steps[place].points), mesh, added)
+        if place == 0 and not self._binding._ground.moved:
+            first.turns = False  # it stands on the shape at rest
         if added:
             first.points = self._result
             first.below = self._result - first.displacement(self._drag.points)
@@ -67,6 +68,11 @@ class LayerDrag:
         view = (self._stages[-1].points if self._heard else self._result).view()
         view.flags.writeable = False
         return view
+
+    @property
+    def inner(self) -> Drag:
+        """The drag of the layer's deformer alone."""
+        return self._drag
 
     @property
     def controls(self) -> Controls:

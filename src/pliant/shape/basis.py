@@ -72,6 +72,10 @@ class Basis(ABC):
     def columns(self) -> Floats:
         """(n, 3, k) all fields."""
 
+    @abstractmethod
+    def freeze(self) -> None:
+        """Make the numbers read-only, so that what depends on them can be known by them."""
+
     def covariances(self) -> Floats:
         """(n, 3, 3) of each point."""
         columns = self.columns()
@@ -125,6 +129,9 @@ class ScalarBasis(Basis):
         gram = (self.factors.T @ weighted).reshape(self.rank, self.rank, 3, 3)
         return np.asarray(gram.transpose(0, 2, 1, 3).reshape(self.count, self.count))
 
+    def freeze(self) -> None:
+        self.factors.flags.writeable = False
+
     def columns(self) -> Floats:
         result = np.zeros((self.size, 3, self.rank, 3))
         for axis in range(3):
@@ -176,6 +183,9 @@ class FullBasis(Basis):
 
     def columns(self) -> Floats:
         return self.fields
+
+    def freeze(self) -> None:
+        self.fields.flags.writeable = False
 
 
 def many(factors: Floats, coefficients: NDArray[np.floating], base: Floats | None) -> NDArray[np.floating]:

@@ -41,6 +41,7 @@ class LinearModel:
                 "have the same"
             )
         object.__setattr__(self, "mean", frozen(mean, np.float64))
+        self.basis.freeze()
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({len(self.mean):,} points, rank {self.rank}, {self.count} coefficients)"

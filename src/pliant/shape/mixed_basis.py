@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-from pliant.shape.basis import Basis, Floats, Integers, everywhere
+from pliant.shape.basis import Basis, Floats, Integers, ScalarBasis, everywhere
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +61,17 @@ class MixedBasis(Basis):
 
     def columns(self) -> Floats:
         matrix = everywhere(self.matrix) if self.scalar else self.matrix
-        return np.asarray(self.base.columns() @ matrix)
+        flat = self.base.columns().reshape(3 * self.size, -1)
+        return np.asarray(flat @ matrix).reshape(self.size, 3, -1)
+
+    def covariances(self) -> Floats:
+        if not isinstance(self.base, ScalarBasis) or not self.scalar:
+            return super().covariances()
+        return ScalarBasis(self.base.factors @ self.matrix, self.deviations).covariances()
+
+    def freeze(self) -> None:
+        self.base.freeze()
+        self.matrix.flags.writeable = False
 
 
 def _alike(matrix: Floats, inner: Floats) -> tuple[Floats, Floats]:
