@@ -16,7 +16,7 @@ from pliant.numerics.ragged import source
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
-CHUNK = 32_768  # points sorted together: input, output and scratch of a chunk stay in the second-level cache
+CHUNKS = 32_768, 65_536  # points sorted together: what a chunk reads and writes stays in the second-level cache
 
 BSPLINE = np.array([[1, 4, 1, 0], [-3, 0, 3, 0], [3, -6, 3, 0], [-1, 3, -3, 1]]) / 6
 """Uniform cubic B-spline: coefficient of power p in basis function b at [p, b] (Lee, Wolberg & Shin 1997, eq. 1)."""
@@ -58,9 +58,11 @@ class CellGrid:
         return np.asarray((self.counts - 1) * self.stride + 4, np.int64)
 
     def powers(self, lattice: Floats) -> Floats:
-        """A lattice (x, y, z, 3) as cubic polynomials along z: flat, of shape (x, y, cells along z, 3, 4)."""
-        windows = sliding_window_view(lattice, 4, axis=2)[:, :, :: self.stride]
-        return np.asarray(windows.reshape(-1, 4) @ self.basis.T).reshape(-1)
+        """A lattice (x, y, z, 3) as :func:`pliant.numerics.tricubic.evaluate` takes it: polynomials along z."""
+        windows = sliding_window_view(lattice, 4, axis=2)[:, :, :: self.stride].reshape(-1, 4)
+        powers = np.zeros(windows.size + 4)
+        np.matmul(windows, self.basis.T, out=powers[:-4].reshape(-1, 4))
+        return powers
 
 
 class CellPoints:
@@ -79,8 +81,8 @@ class CellPoints:
 
         self.grid, self.points = grid, points
         count, cells = len(points), int(grid.counts.prod())
-        self._chunk = max(CHUNK, 4 * cells)
-        self._order = np.empty(count, np.int32)
+        self._chunk = max(min(max(count // 8, CHUNKS[0]), CHUNKS[1]), 4 * cells)
+        self._order, self._places = np.empty(count, np.int32), np.empty(count, np.int32)
         self._local = np.empty(3 * (count + 8))
         self._local.reshape(3, -1)[:, count:] = 0.0  # lanes beyond the last point compute too
         self._starts = np.empty((-(-count // self._chunk), cells + 2), np.int64)
@@ -90,7 +92,7 @@ class CellPoints:
             starts = self._starts[start // self._chunk]
             tricubic.locate(
                 flat, start, stop, grid.frame, grid.limits, grid.keep, grid.counts,
-                self._order, self._local, starts,
+                self._order, self._places, self._local, starts,
             )  # fmt: skip
 
         for_chunks(work, count, self._chunk)
@@ -114,7 +116,7 @@ class CellPoints:
 
         def work(first: int, starts: Integers) -> None:
             tricubic.evaluate(
-                first, starts, self._order, self._local, grid.counts, grid.stride, grid.basis,
+                first, starts, self._order, self._places, self._local, grid.counts, grid.stride, grid.basis,
                 powers, grid.shape, cells, base, out,
             )  # fmt: skip
 

@@ -238,6 +238,21 @@ def store_sum_of_halves(_typing: Any, array: Any, index: Any, value: Any) -> Any
 
 
 @intrinsic
+def add_triple(_typing: Any, out: Any, place: Any, left: Any, i: Any, right: Any, j: Any) -> Any:
+    """out[place:place + 3] = left[i:i + 3] + right[j:j + 3]; a fourth number is added too, and means nothing."""
+
+    def generate(context: Any, builder: Any, sig: Any, args: Any) -> Any:
+        four = ir.VectorType(ir.DoubleType(), WIDTH // 2).as_pointer()
+        target, a, b = (
+            builder.bitcast(_address(context, builder, sig.args[n], *args[n : n + 2]), four) for n in (0, 2, 4)
+        )
+        builder.store(builder.fadd(builder.load(a, align=8), builder.load(b, align=8)), target, align=8)
+        return context.get_dummy_value()
+
+    return types.void(out, types.intp, left, types.intp, right, types.intp), generate
+
+
+@intrinsic
 def total(_typing: Any, value: Any) -> Any:
     """The sum over the lanes, halves first."""
 

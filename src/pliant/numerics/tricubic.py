@@ -9,9 +9,9 @@ Arguments that the kernels share:
 ``first, starts``
     Place of the chunk's first point; (cells + 2,) where each cell's run begins in the chunk. The last run holds the
     points that no cell owns.
-``order, local``
-    (n,) which point stands at each sorted place; (3 * (n + 8),) the sorted points' coordinates in their cells, one
-    axis after another.
+``order, places, local``
+    (n,) which point stands at each sorted place; (n,) at which place of its chunk each point stands; (3 * (n + 8),)
+    the sorted points' coordinates in their cells, one axis after another.
 ``grid, stride, basis``
     (3,) numbers of cells; control points from one cell to the next (1 for B-splines, 3 for Bézier patches);
     (4, 4) coefficient of power p in basis function b at [p, b].
@@ -25,6 +25,7 @@ import numpy as np
 
 from pliant.numerics.compiling import inlined, kernel
 from pliant.numerics.lanes import (
+    add_triple,
     clamp,
     get,
     load,
@@ -40,7 +41,7 @@ from pliant.numerics.lanes import (
 
 
 @kernel
-def locate(points, first, stop, frame, limits, keep, grid, order, local, starts):
+def locate(points, first, stop, frame, limits, keep, grid, order, places, local, starts):
     """Sort one chunk of points by cell: a stable counting sort.
 
     ``frame`` (3, 4) maps positions to grid coordinates; they are clamped to ``limits`` (2, 3), and a point beyond
@@ -77,6 +78,7 @@ def locate(points, first, stop, frame, limits, keep, grid, order, local, starts)
         at = place[cell]
         place[cell] = at + 1
         order[first + at] = first + n
+        places[first + n] = at
     for at in range(first, stop):  # gathered, so that what is written to memory is written in sequence
         n = 3 * (get(order, at) - first)
         put(local, at, get(q, n))
@@ -125,64 +127,75 @@ def _cube(lattice, at, down_x, down_y, table, x, y, z):
 
 
 @inlined
-def _along_z(powers, at, t):
-    """A cubic polynomial of eight parameters, from four coefficients."""
-    return ((t * get(powers, at + 3) + get(powers, at + 2)) * t + get(powers, at + 1)) * t + get(powers, at)
+def _expand(powers, corner, down_x, down_y, basis, half, cell):
+    """A cell's cubic polynomials: from powers along z to powers along y, then x, in rows of 16 with 12 in use."""
+    for i in range(4):
+        for part in range(0, 16, 8):
+            row = corner + i * down_x + part
+            r0, r1 = load(powers, row), load(powers, row + down_y)
+            r2, r3 = load(powers, row + 2 * down_y), load(powers, row + 3 * down_y)
+            for q in range(4):
+                mixed = r0 * basis[q, 0] + r1 * basis[q, 1] + r2 * basis[q, 2] + r3 * basis[q, 3]
+                store(half, 64 * i + 16 * q + part, mixed)
+    for at in range(0, 64, 8):
+        r0, r1, r2, r3 = load(half, at), load(half, at + 64), load(half, at + 128), load(half, at + 192)
+        for p in range(4):
+            store(cell, 64 * p + at, r0 * basis[p, 0] + r1 * basis[p, 1] + r2 * basis[p, 2] + r3 * basis[p, 3])
 
 
 @inlined
-def _cubes(powers, corner, down_x, down_y, table, t):
-    """The three sums over 4 x 4 polynomials along z; the table begins with the factors along x, then y."""
+def _along_z(cell, at, t):
+    """A cubic polynomial of eight parameters, from four coefficients."""
+    return ((t * get(cell, at + 3) + get(cell, at + 2)) * t + get(cell, at + 1)) * t + get(cell, at)
+
+
+@inlined
+def _polynomials(cell, u, v, w):
+    """A cell's three polynomials at eight points, by Horner's rule along z, y, then x: 189 multiply-adds."""
     x, y, z = spread(0.0), spread(0.0), spread(0.0)
-    for i in range(4):
-        u, v, w = spread(0.0), spread(0.0), spread(0.0)
-        for j in range(4):
-            p, weight = corner + i * down_x + j * down_y, load(table, 32 + 8 * j)
-            u = u + weight * _along_z(powers, p, t)
-            v = v + weight * _along_z(powers, p + 4, t)
-            w = w + weight * _along_z(powers, p + 8, t)
-        weight = load(table, 8 * i)
-        x, y, z = x + weight * u, y + weight * v, z + weight * w
+    for i in range(192, -64, -64):
+        a, b, c = spread(0.0), spread(0.0), spread(0.0)
+        for at in range(i + 48, i - 16, -16):
+            a = a * v + _along_z(cell, at, w)
+            b = b * v + _along_z(cell, at + 4, w)
+            c = c * v + _along_z(cell, at + 8, w)
+        x, y, z = x * u + a, y * u + b, z * u + c
     return x, y, z
 
 
 @kernel
-def evaluate(first, starts, order, local, grid, stride, basis, powers, shape, chosen, base, out):
+def evaluate(first, starts, order, places, local, grid, stride, basis, powers, shape, chosen, base, out):
     """out = base + the tensor product, at one chunk's points in the chosen cells.
 
-    ``powers``, flat, of shape (x, y, cells along z, 3, 4): the lattice as cubic polynomials along z, coefficients of
-    the powers 0 to 3. Where all cells are chosen, points that belong to none get their base.
+    ``powers``, flat, of shape (x, y, cells along z, 3, 4), and four numbers more: the lattice as cubic polynomials
+    along z, coefficients of the powers 0 to 3. Where all cells are chosen, points that belong to none get their base.
     """
     length, cells = len(local) // 3, len(starts) - 2
-    moved, table, piece = np.empty(3 * starts[cells + 1]), np.empty(64), np.empty(24)
+    count, owned = starts[cells + 1], starts[cells]
+    moved, half, cubic = np.empty(3 * (count + 8)), np.empty(256), np.empty(256)  # sorted: written in sequence
     down_x, down_y = shape[1] * grid[2] * 12, grid[2] * 12
     for cell in chosen:
+        if starts[cell] == starts[cell + 1]:
+            continue
         k, rest = cell % grid[2], cell // grid[2]
         corner = ((rest // grid[1] * shape[1] + rest % grid[1]) * stride * grid[2] + k) * 12
-        stop = first + starts[cell + 1]
-        for at in range(first + starts[cell], stop, 8):
-            tabulate(table, 0, basis, load(local, at))
-            tabulate(table, 32, basis, load(local, length + at))
-            x, y, z = _cubes(powers, corner, down_x, down_y, table, load(local, 2 * length + at))
-            store(piece, 0, x)
-            store(piece, 8, y)
-            store(piece, 16, z)
-            for i in range(min(8, stop - at)):
-                n = 3 * (get(order, at + i) - first)
-                for c in range(3):
-                    put(moved, n + c, get(piece, 8 * c + i))
+        _expand(powers, corner, down_x, down_y, basis, half, cubic)
+        for at in range(first + starts[cell], first + starts[cell + 1], 8):
+            x, y, z = _polynomials(cubic, load(local, at), load(local, length + at), load(local, 2 * length + at))
+            store_triples(moved, 3 * (at - first), x, y, z)
     if len(chosen) < cells:
         for cell in chosen:
-            for at in range(first + starts[cell], first + starts[cell + 1]):
-                n = 3 * get(order, at)
+            for at in range(starts[cell], starts[cell + 1]):
+                n = 3 * get(order, first + at)
                 for c in range(3):
-                    put(out, n + c, get(base, n + c) + get(moved, n + c - 3 * first))
+                    put(out, n + c, get(base, n + c) + get(moved, 3 * at + c))
         return
-    for at in range(first + starts[cells], first + starts[cells + 1]):
-        for c in range(3):
-            put(moved, 3 * (get(order, at) - first) + c, 0.0)
-    for n in range(len(moved)):  # in the points' own order: memory is passed in sequence
-        put(out, 3 * first + n, get(base, 3 * first + n) + get(moved, n))
+    moved[3 * owned :] = 0.0
+    for n in range(first, first + count - 1):  # the fourth number is overwritten by the next point
+        add_triple(out, 3 * n, base, 3 * n, moved, 3 * get(places, n))
+    last = 3 * (first + count - 1)
+    for c in range(3):
+        put(out, last + c, get(base, last + c) + get(moved, 3 * get(places, first + count - 1) + c))
 
 
 @kernel
