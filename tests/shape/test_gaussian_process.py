@@ -77,6 +77,27 @@ def test_samples_agree_with_what_was_seen(kernel, seen):
     np.testing.assert_array_equal(process.sample(seed=0, domain=around)(points), one(points))
 
 
+def test_draws_have_the_covariance_of_the_process(kernel, seen):
+    points, values = seen
+    free = pl.GaussianProcess(kernel)
+    for process, places in ((free, points[:3]), (free.posterior(points, values, noise=0.1), points[:2] + 0.3)):
+        drawn = np.array([process.draw(places, seed=seed).reshape(-1) for seed in range(3000)])
+        expected = process.covariance(places).reshape(drawn.shape[1], -1)
+        assert np.linalg.norm(np.cov(drawn.T) - expected) < 0.12 * np.linalg.norm(expected)
+        spread = np.sqrt(np.diag(expected).max())
+        np.testing.assert_allclose(drawn.mean(axis=0).reshape(-1, 3), process.mean(places), atol=0.1 * spread)
+
+
+def test_draws_of_one_seed_change_gradually_with_the_kernel(seen):
+    points = np.random.default_rng(5).normal(size=(80, 3))
+
+    def drawn(sigma):
+        return pl.GaussianProcess(pl.GaussianKernel(sigma=sigma, scale=1.0)).draw(points, seed=3)
+
+    near, far = (np.linalg.norm(drawn(sigma) - drawn(1.0)) for sigma in (1.001, 3.0))
+    assert near < 0.01 * far
+
+
 def test_samples_and_means_are_maps_of_space(kernel, seen):
     points, values = seen
     places = np.random.default_rng(3).normal(size=(60, 3))

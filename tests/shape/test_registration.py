@@ -145,6 +145,25 @@ def test_a_moved_shape_of_another_topology_is_found(soft, fine, pose):
     np.testing.assert_allclose(fitted.points, moved(fitted.pose, soft.instance(fitted.coefficients)), atol=1e-10)
 
 
+def test_whoever_watches_a_fit_sees_each_round_and_may_end_it(soft, fine):
+    seen = []
+    found = soft.fit(fine, iterations=6, pose="rigid", watch=seen.append)
+    assert [each.number for each in seen] == list(range(1, found.iterations + 1))
+    assert {each.most for each in seen} == {6}
+    np.testing.assert_array_equal(seen[-1].coefficients, found.coefficients)
+    np.testing.assert_array_equal(seen[-1].pose, found.pose)
+
+    class EnoughError(Exception):
+        pass
+
+    def stop(each):
+        if each.number == 2:
+            raise EnoughError
+
+    with pytest.raises(EnoughError):
+        soft.fit(fine, watch=stop)
+
+
 def test_half_a_target_does_not_pull_the_rest(soft, fine):
     given = 0.5 * np.random.default_rng(2).normal(size=soft.count)
     whole = soft.deformer(given)(fine)

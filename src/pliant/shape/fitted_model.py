@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike
 
 from pliant.mesh import PolygonMesh
 from pliant.shape.changeable_model import ChangeableModel
-from pliant.shape.registration import Fit, Pose, fit
+from pliant.shape.registration import Fit, Pose, Watch, fit
 from pliant.shape.robust import Loss
 
 
@@ -29,6 +29,7 @@ class FittedModel(ChangeableModel):
         loss: Loss = "huber",
         angle: float = np.pi / 3,
         slide: float = 3.0,
+        watch: Watch | None = None,
     ) -> Fit:
         """The model's shape that lies on a mesh of any topology: GP-ICP, no correspondence needed.
 
@@ -53,6 +54,8 @@ class FittedModel(ChangeableModel):
             Normals that differ by more, in radians, do not correspond.
         slide
             How many times farther a point may move along the target than off it.
+        watch
+            Told after each round how far the fit has come; what it raises ends the fit.
 
         Raises
         ------
@@ -71,6 +74,7 @@ class FittedModel(ChangeableModel):
             loss=loss,
             angle=angle,
             slide=slide,
+            watch=watch,
         )
 
     def descend(

@@ -137,6 +137,23 @@ class GaussianProcess:
         field = RandomField(fields, prior=self.prior)
         return field.moved(np.random.default_rng(seed).standard_normal(field.controls.shape))
 
+    def draw(self, points: Target, *, seed: int | None = None) -> Points:
+        """(n, 3) random displacements of some points, exactly as the process has them.
+
+        They are the symmetric root of the covariance times normal numbers: one seed's fields change gradually as the
+        kernel does. For some hundred points, since it takes the cube of their number.
+        """
+        places = as_points(points)
+        normal = np.random.default_rng(seed).standard_normal(places.shape)
+        if self.kernel.scalar and self.places is None:
+            values, vectors = np.linalg.eigh(self.kernel(places, places))
+            moved = vectors @ (np.sqrt(np.maximum(values, 0.0))[:, None] * (vectors.T @ normal))
+        else:
+            values, vectors = np.linalg.eigh(self.covariance(places).reshape(normal.size, -1))
+            root = np.sqrt(np.maximum(values, 0.0)) * (vectors.T @ normal.reshape(-1))
+            moved = (vectors @ root).reshape(-1, 3)
+        return np.asarray(self.mean(places) + moved)
+
     def fields(
         self, domain: PolygonMesh | ArrayLike | None = None, *, rank: int = 300, tolerance: float = 1e-3
     ) -> LowRank:

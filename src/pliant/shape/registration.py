@@ -6,6 +6,7 @@ section 4.3). The noise shrinks from round to round: at first only the strongest
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
@@ -62,6 +63,29 @@ class Fit:
     iterations: int
 
 
+@dataclass(frozen=True, eq=False)
+class Round:
+    """How far a fit has come.
+
+    Parameters
+    ----------
+    number, most
+        Which round this was, and how many there will be at most.
+    coefficients
+        (k,) of the shape now, in standard deviations.
+    pose
+        (4, 4) from the model's space to the target's.
+    """
+
+    number: int
+    most: int
+    coefficients: Floats
+    pose: Floats
+
+
+Watch = Callable[[Round], None]
+
+
 def fit(
     model: LinearModel,
     mesh: PolygonMesh,
@@ -73,6 +97,7 @@ def fit(
     loss: robust.Loss = "huber",
     angle: float = np.pi / 3,
     slide: float = 3.0,
+    watch: Watch | None = None,
 ) -> Fit:
     """Fit by GP-ICP; parameters as for :meth:`pliant.ShapeModel.fit`."""
     last, first = checked_noise(model, noise, start_noise)
@@ -88,6 +113,8 @@ def fit(
         for count in range(1, iterations + 1):
             level = max(last, first * (last / first) ** (1.25 * (count - 1) / max(1, iterations - 1)))
             step = rounds.advance(level)
+            if watch is not None:
+                watch(rounds.told(count, iterations))
             if level == last and step < SETTLED * last:
                 status = "converged"
                 break
@@ -185,6 +212,9 @@ class _Rounds:
         rows = self._rows if len(used) == len(self._chosen) else self._rows.rows(used)
         self._coefficients = most_likely(rows, goals - model.mean[self._chosen[used]], error)
         return model.instance(self._coefficients)
+
+    def told(self, number: int, most: int) -> Round:
+        return Round(number, most, self._coefficients, self._matrix)
 
     def result(self, status: Literal["converged", "stopped"], count: int) -> Fit:
         points = moved(self._matrix, self._shape)
