@@ -136,7 +136,7 @@ class SurfaceBinding(Binding):
         np.copyto(result, self._points)
         if not np.array_equal(goal, self._rest):
             self._edit(goal, result)
-            require_finite(result[self.constraints.free], "the edit")
+            require_finite(result, "the edit")
         return result
 
     @abstractmethod

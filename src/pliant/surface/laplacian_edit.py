@@ -123,11 +123,12 @@ class LaplacianBinding(SurfaceBinding, LinearBinding):
     ) -> None:
         super().__init__(points, constraints, goal)
         self._factor, self._coupling, self._transposed = factor, coupling, csr_array(coupling.T)
-        self._unknown = unknown
+        self._unknown, self._begin = unknown, points[unknown]
         self._held = len(unknown) == len(constraints.free)  # else the handle is drawn, and solved for
 
     def _edit(self, goal: Controls, points: Points) -> None:
-        points[self._unknown] += self._factor.solve(np.asarray(self._coupling @ (goal - self._rest)))
+        shift = self._factor.solve(np.asarray(self._coupling @ (goal - self._rest)))
+        points[self._unknown] = np.add(shift, self._begin, out=shift)
         if self._held:
             points[self.constraints.handle] = goal
 
