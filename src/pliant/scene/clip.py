@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from pliant.errors import InvalidParameter
 from pliant.io.report import LossReport
@@ -146,6 +145,11 @@ class Clip:
         tracks = tuple(track for track in self.tracks if track.layer in stack.names)
         return replace(self, mesh=mesh, stack=stack, tracks=tracks)
 
+    def renamed(self, old: str, new: str, stack: Stack) -> Clip:
+        """The clip on a stack in which a layer has another name: its keys go with it."""
+        tracks = tuple(replace(track, layer=new) if track.layer == old else track for track in self.tracks)
+        return replace(self, stack=stack, tracks=tracks)
+
     @property
     def period(self) -> float:
         """Seconds after which it has been all through."""
@@ -165,6 +169,13 @@ class Clip:
             values = {track.field: track.at(moment) for track in self.tracks if track.layer == name}
             stack = stack._exchanged(name, keyed_layer(stack[name], values))
         return stack
+
+    def base_at(self, time: float) -> Points | None:
+        """(n, 3) where the mesh's own motion has put its points at a time; None where it has none."""
+        if self.motion is None:
+            return None
+        frame = self.motion.at(self._moment(time))
+        return frame if self.amplify == 1.0 else self.mesh.points + self.amplify * (frame - self.mesh.points)
 
     def sample(self, time: float) -> PolygonMesh:
         """The mesh at a time, its normals too."""
@@ -227,11 +238,12 @@ class Clip:
         return self.stack_at(0.0).bind(self.mesh)
 
     def _points(self, binding: StackBinding, time: float) -> Points:
-        base: ArrayLike | None = None
-        if self.motion is not None:
-            frame = self.motion.at(self._moment(time))
-            base = frame if self.amplify == 1.0 else self.mesh.points + self.amplify * (frame - self.mesh.points)
-        result = binding.updated(self.stack_at(time), base)
-        if self.intensity == 1.0:
-            return result.result
-        return np.asarray(result.points + self.intensity * (result.result - result.points))
+        result = binding.updated(self.stack_at(time), self.base_at(time))
+        return intensified(result, self.intensity)
+
+
+def intensified(binding: StackBinding, intensity: float) -> Points:
+    """(n, 3) what a binding gives, its displacements multiplied."""
+    if intensity == 1.0:
+        return binding.result
+    return np.asarray(binding.points + intensity * (binding.result - binding.points))

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from pliant.errors import InvalidParameter
 from pliant.mesh import Points
+from pliant.scene.scene import Scene
 from pliant.scene.stack import Stack
 from pliant.studio.frames import Frame
 from pliant.studio.request import Client, Request
@@ -35,16 +36,18 @@ class Dragging(ABC):
         The layer that is changed.
     key
         What the history will call it.
+    stack
+        Where the layer is, while it is none of the scene's; None = the scene's.
     """
 
-    def __init__(self, session: Session, client: Client, layer: str, key: str) -> None:
+    def __init__(self, session: Session, client: Client, layer: str, key: str, stack: Stack | None = None) -> None:
         if session.dragging is not None and session.dragging.client is not client:
             raise InvalidParameter("another page is dragging just now: let it finish first")
         session.drop_drag()
         self.client: Client = client
         self.layer, self.key, self._session = layer, key, session
         self._index: NDArray[np.integer] | None = None
-        session.shown.scene.stack.index(layer)  # there is such a layer
+        (session.shown.scene.stack if stack is None else stack).index(layer)  # there is such a layer
 
     @abstractmethod
     def move(self, request: Request) -> tuple[NDArray[np.integer], Points, dict[str, NDArray[Any]]]:
@@ -54,6 +57,11 @@ class Dragging(ABC):
     @abstractmethod
     def stack(self) -> Stack:
         """The stack as it would be committed."""
+
+    @property
+    def scene(self) -> Scene:
+        """The scene as it would be committed."""
+        return self._session.required.replace(stack=self.stack)
 
     def preview(self, request: Request) -> Frame:
         """The answer to a move: the indices travel only when they are others than before."""
@@ -110,9 +118,9 @@ def ongoing(session: Session, request: Request) -> Dragging:
 def commit(session: Session, request: Request) -> None:
     """End a drag, keeping what it did."""
     found = ongoing(session, request)
-    stack = found.stack
+    scene = found.scene
     session.dragging = None
-    session.commit(session.required.replace(stack=stack), found.key, found.layer)
+    session.commit(scene, found.key, found.layer)
 
 
 def cancel(session: Session, request: Request) -> None:

@@ -25,6 +25,7 @@ from pliant.studio.files import Uploads
 from pliant.studio.frames import Frame, MalformedFrame
 from pliant.studio.history import Entry, History
 from pliant.studio.jobs import Jobs
+from pliant.studio.posing import keyed
 from pliant.studio.request import COMMANDS, Client, Request
 from pliant.studio.samples import samples_folder
 from pliant.studio.stage import Stage
@@ -56,6 +57,7 @@ class Session:
         self.stage: Stage | None = None
         self.dragging: Dragging | None = None
         self.name, self.revision, self.saved = name, 0, 0
+        self.time, self.recording = 0.0, False  # the playhead, in seconds, and whether edits set keys there
         self.locked: dict[str, set[int]] = {}
         self.beside: dict[str, Any] = {}  # what modes keep beside the scene, by their names: forgotten with it
         self.clients: list[Client] = []
@@ -67,8 +69,8 @@ class Session:
 
     @property
     def scene(self) -> Scene | None:
-        """The scene that is shown; None on the start page."""
-        return None if self.history is None else self.history.scene
+        """The scene as it stands at the time that is shown; None on the start page."""
+        return None if self.stage is None else self.stage.scene
 
     @property
     def required(self) -> Scene:
@@ -139,6 +141,7 @@ class Session:
         stage = Stage(scene)
         self.history, self.stage = History(Entry(scene, key, name)), stage
         self.name, self.locked, self.beside = name, {}, {}
+        self.time, self.recording = 0.0, False
         self.revision += 1
         self.saved = self.revision
         self._tell_scene(self.clients)
@@ -160,7 +163,8 @@ class Session:
     def commit(self, scene: Scene, key: str, subject: str = "") -> None:
         """Show a scene that has been made of the present one, as a new entry of the history."""
         assert self.history is not None
-        self.shown.show(scene)  # where this fails, nothing has happened
+        scene = keyed(self.required, scene, self.time, self.recording)
+        self.shown.show(scene, self.time)  # where this fails, nothing has happened
         self.history.push(Entry(scene, key, subject))
         self.changed()
 
@@ -170,8 +174,20 @@ class Session:
         assert self.history is not None
         self.drop_drag()
         if self.history.go(position):
-            self.shown.show(self.history.scene)
+            self.shown.show(self.history.scene, self.time)
             self.changed()
+
+    def go_to(self, time: float) -> None:
+        """Show the scene at another time: no change, and no entry of the history."""
+        scene = self.required
+        self.drop_drag()
+        self.shown.show(scene, time)
+        self.time = time
+        moved = self.shown.moved_frame()
+        if moved is not None:
+            self.broadcast(moved)
+        self._tell_scene(self.clients)
+        self.jobs.look_for_folds()
 
     def changed(self) -> None:
         """Tell everybody what is shown now, and keep it safe."""

@@ -14,6 +14,7 @@ from pliant.scene.kinds import kind_of
 from pliant.scene.layer import Layer
 from pliant.scene.scene import Scene
 from pliant.scene.values import encode
+from pliant.studio.clip_state import clip_state
 from pliant.studio.lattices import lattice_shape
 from pliant.studio.parts import parts_of
 from pliant.studio.titles import titled
@@ -29,13 +30,15 @@ def scene_state(session: Session) -> dict[str, Any]:
     scene, history = session.scene, session.history
     if scene is None or history is None or session.stage is None:
         empty: dict[str, Any] = {"labels": [], "position": 0}
-        return {"revision": session.revision, "name": "", "dirty": False, "mesh": None, "layers": [], "history": empty}
+        nothing: dict[str, Any] = {"mesh": None, "layers": [], "clip": None, "history": empty}
+        return {"revision": session.revision, "name": "", "dirty": False, **nothing}
     return {
         "revision": session.revision,
         "name": session.name,
         "dirty": session.revision != session.saved,
         "mesh": _mesh(scene, session.stage.id, session.name),
         "layers": [_layer(layer) for layer in scene.stack],
+        "clip": clip_state(scene, session.time, session.recording),
         "history": {
             "labels": [{"key": entry.key, "subject": entry.subject} for entry in history.entries],
             "position": history.position,

@@ -10,7 +10,22 @@ from pliant.studio.commands import (
     meshes,
     opening,
     points,
+    surface,
+    time,
     transforms,
 )
 
-__all__ = ["axial", "dragging", "exporting", "fields", "history", "layers", "meshes", "opening", "points", "transforms"]
+__all__ = [
+    "axial",
+    "dragging",
+    "exporting",
+    "fields",
+    "history",
+    "layers",
+    "meshes",
+    "opening",
+    "points",
+    "surface",
+    "time",
+    "transforms",
+]

@@ -83,7 +83,9 @@ def rename(session: Session, request: Request) -> None:
     stack = session.required.stack.rename(old, new)
     if old in session.locked:
         session.locked[new] = session.locked.pop(old)
-    _commit(session, stack, "rename", new)
+    scene = session.required
+    clip = None if scene.clip is None else scene.clip.renamed(old, new, stack)
+    session.commit(scene.replace(stack=stack, clip=clip), "rename", new)
 
 
 @command("layers.move")
