@@ -150,6 +150,20 @@ def test_stopping_early_is_a_status():
     assert (solution.status, solution.iterations) == ("stopped", 2)
 
 
+def test_a_drag_that_may_do_little_at_a_time_ends_where_one_that_may_do_all_does():
+    bound = ARAP(ROI, HANDLE, tolerance=1e-9, iterations=5000).bind(MESH)
+    goal, drag, energies = bound.rest + [0.5, 0, -0.2], bound.drag(), []
+    drag.iterations = 3
+    drag.resume(LaplacianEdit(ROI, HANDLE).bind(MESH).deform(goal))  # another method's result is where it begins
+    while drag.solution is None or drag.solution.status == "stopped":
+        drag.update(goal)
+        energies += drag.solution.energies.tolist()
+        assert drag.solution.iterations <= 3
+    assert (np.diff(energies) <= 1e-9 * energies[0]).all()
+    np.testing.assert_allclose(drag.points, bound.solve(goal).points, atol=1e-3)
+    assert not len(drag.update(goal))  # there is nothing left to do
+
+
 def test_weights_make_a_handle_strong():
     weak, strong = (
         LaplacianEdit(ROI, HANDLE, method="naive", pull=pull).bind(MESH).deform(MESH.points[HANDLE] + [1, 0, 0])[HANDLE]

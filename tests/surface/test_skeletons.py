@@ -55,6 +55,19 @@ def test_groups_follow_any_scalar():
     assert np.array_equal(pl.contour_skeleton(mesh, 7, "z").groups, skeleton.groups)
 
 
+def test_it_goes_along_with_the_mesh():
+    mesh = two_legs()
+    skeleton = pl.contour_skeleton(mesh, contours=8)
+    moved = np.where(mesh.points[:, :1] > 2, [[0.3, 0, 0.1]], 0.0)  # one leg is shifted, the other stays
+    there = skeleton.points[:, 0] > 1.5
+    np.testing.assert_allclose(skeleton.following(moved), skeleton.points + there[:, None] * [0.3, 0, 0.1], atol=1e-12)
+    matrix = np.array([[1, 0.2, 0], [0, 1, 0.5], [0, 0, 2.0]])
+    means = [(mesh.points[skeleton.groups == g] @ (matrix - np.eye(3)).T).mean(axis=0) for g in range(len(there))]
+    np.testing.assert_allclose(
+        skeleton.following(mesh.points @ (matrix - np.eye(3)).T) - skeleton.points, means, atol=1e-12
+    )
+
+
 def test_it_can_be_written_as_lines(tmp_path):
     skeleton = pl.contour_skeleton(tube(), contours=9)
     pl.write(skeleton.as_mesh(), tmp_path / "skeleton.vtp")

@@ -10,7 +10,7 @@ import pliant as pl
 from pliant.errors import InvalidParameter, InvalidTarget
 from pliant.numerics.laplacians import normalized, uniform_weights
 from pliant.surface import regions
-from pliant.surface.screen import in_lasso, in_rectangle
+from pliant.surface.screen import in_brush, in_lasso, in_rectangle
 from pliant.surface.smoothing import METHODS
 
 MESH = tube(40, 16)
@@ -108,6 +108,24 @@ def test_a_perspective_camera_sees_nothing_behind_it():
     found = in_rectangle(mesh, camera, [-9, -9], [9, 9])
     assert (mesh.points[found, 1] > 0).all()
     assert len(found)
+
+
+def test_a_brush_paints_what_its_stroke_passes():
+    camera = np.array([[0.2, 0, 0, 0], [0, 0, 0.4, -0.8], [0, 0.2, 0, 0], [0, 0, 0, 1.0]])  # from -y; twice as high
+    mesh = tube(60, 40)
+    across = mesh.points[:, [0, 2]]
+    dab = in_brush(mesh, camera, [(0.0, 0.0)], (0.06, 0.12))  # a circle of 0.3 around (0, 2)
+    assert np.array_equal(dab, np.flatnonzero(np.linalg.norm(across - [0, 2], axis=1) < 0.3))
+    stroke = in_brush(mesh, camera, [(0.0, -0.4), (0.0, 0.0), (0.0, 0.4)], (0.06, 0.12))
+    way = np.abs(across[:, 0]) < np.sqrt(np.maximum(0.09 - np.maximum(np.abs(across[:, 1] - 2) - 1, 0) ** 2, 0))
+    assert np.array_equal(stroke, np.flatnonzero(way))
+    seen = in_brush(mesh, camera, [(0.0, 0.0)], (0.06, 0.12), visible=True)
+    assert np.isin(seen, dab).all()
+    assert (mesh.points[seen, 1] < 0.05).all()
+    assert len(seen) < len(dab)
+    for path, radius, cause in (([], (1, 1), "path"), ([(0, 0)], (0, 1), "positive"), ([(0, 0)], 1, "two")):
+        with pytest.raises(InvalidParameter, match=cause):
+            in_brush(mesh, camera, path, radius)
 
 
 def pairs_between(one, two, count=40):

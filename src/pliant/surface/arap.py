@@ -93,7 +93,9 @@ class ARAPBinding(SurfaceBinding, IterativeBinding):
         super().__init__(points, constraints, goal)
         self.cells, self._tolerance, self._most = cells, tolerance, iterations
 
-    def solve(self, controls: ArrayLike | None = None, start: Points | None = None) -> Solution:
+    def solve(
+        self, controls: ArrayLike | None = None, start: Points | None = None, *, iterations: int | None = None
+    ) -> Solution:
         goal = self._checked(controls)
         if start is None and np.array_equal(goal, self._rest):
             return Solution(self._points.copy(), "converged", np.zeros(1))
@@ -105,18 +107,18 @@ class ARAPBinding(SurfaceBinding, IterativeBinding):
             points[self.constraints.free] = start[self.constraints.free]
             rotations = self.cells.identities()
             energy = self.cells.turn(points, rotations)
-        return self._iterate(points, rotations, energy)
+        return self._iterate(points, rotations, energy, self._most if iterations is None else iterations)
 
-    def _iterate(self, points: Points, rotations: NDArray[np.float64], energy: float) -> Solution:
+    def _iterate(self, points: Points, rotations: NDArray[np.float64], energy: float, most: int) -> Solution:
         energies, floor = [energy], _NOTHING * self.cells.size
-        while energies[-1] > floor and len(energies) <= self._most:
+        while energies[-1] > floor and len(energies) <= most:
             self.cells.settle(points, rotations)
             energies.append(self.cells.turn(points, rotations))
             if not energies[-2] - energies[-1] > self._tolerance * energies[-2]:
                 break
         if not np.isfinite(energies[-1]):
             raise NonFiniteResult("ARAP left the finite numbers: are the handle's positions of the mesh's own unit?")
-        stopped = len(energies) > self._most and energies[-2] - energies[-1] > self._tolerance * energies[-2]
+        stopped = len(energies) > most and energies[-2] - energies[-1] > self._tolerance * energies[-2]
         return Solution(points, "stopped" if stopped else "converged", np.array(energies))
 
     def _guess(self, points: Points, goal: Controls) -> tuple[NDArray[np.float64], float]:

@@ -50,6 +50,14 @@ class ContourSkeleton:
         padded = np.vstack([self.points, np.zeros((1, 3))])
         return padded[self.groups]
 
+    def following(self, displacements: ArrayLike) -> Points:
+        """(g, 3) the skeleton's points when each goes along with its group: by the mean of its (n, 3) displacements."""
+        moved, used = np.asarray(displacements, np.float64), self.groups >= 0
+        groups, size = self.groups[used], len(self.points)
+        count = np.maximum(np.bincount(groups, minlength=size), 1)
+        sums = [np.bincount(groups, weights=column, minlength=size) for column in moved[used].T]
+        return np.asarray(self.points + np.stack(sums, axis=1) / count[:, None])
+
     def as_mesh(self) -> PolygonMesh:
         """The links as polylines, to be written or drawn."""
         return PolygonMesh(self.points, lines=Ragged.of(self.links.astype(np.int32)))

@@ -122,7 +122,9 @@ class RigidSkeletonBinding(SkeletonBinding, IterativeBinding):
         super().__init__(points, constraints, goal, skeleton, motion, moving)
         self._cells, self._iterations = cells, iterations
 
-    def solve(self, controls: ArrayLike | None = None, start: Points | None = None) -> Solution:
+    def solve(
+        self, controls: ArrayLike | None = None, start: Points | None = None, *, iterations: int | None = None
+    ) -> Solution:
         """As :meth:`deform`, with an account; the skeleton is always the guess, whatever ``start`` is."""
         shift = self._shift(self._checked(controls))
         points = self._points + self._displacements(shift)
@@ -130,7 +132,7 @@ class RigidSkeletonBinding(SkeletonBinding, IterativeBinding):
             return Solution(self._points.copy(), "converged", np.zeros(1))
         rotations = self._cells.identities()
         energies = [self._cells.turn(points, rotations)]
-        for _ in range(self._iterations):
+        for _ in range(self._iterations if iterations is None else iterations):
             self._cells.settle(points, rotations)
             energies.append(self._cells.turn(points, rotations))
         return Solution(points, "stopped", np.array(energies))

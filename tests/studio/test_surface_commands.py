@@ -1,0 +1,236 @@
+"""Surface editing without a browser: what a page picks and drags is what the library finds and computes."""
+
+import numpy as np
+import pytest
+from test_session import Page
+
+import pliant as pl
+from pliant.scene.layer import Layer
+from pliant.scene.scene import Scene
+from pliant.scene.stack import Stack
+from pliant.studio.samples import bar
+from pliant.studio.session import Session
+from pliant.surface import regions
+from pliant.surface.screen import in_brush, in_lasso
+
+BAR = bar()
+X = BAR.points[:, 0]
+REGION, HANDLE = np.flatnonzero(X > -0.5), np.flatnonzero(X > 1.8)
+CAMERA = np.array([[0.4, 0, 0, 0], [0, 0, 0.8, 0], [0, 0.4, 0, 0], [0, 0, 0, 1.0]])  # from -y, straight on
+METHODS = {"laplacian": pl.LaplacianEdit, "arap": pl.ARAP, "skeleton": pl.SkeletonEdit}
+
+
+@pytest.fixture
+def edited():
+    import pliant.studio.commands  # noqa: F401
+
+    opened = []
+
+    def begin(scene):
+        session, page = Session(scene, "bar"), Page()
+        session.join(page)
+        opened.append(session)
+        return session, page
+
+    yield begin
+    for session in opened:
+        session.end()
+
+
+def turn(angle, axis=1, shift=(0.0, 0.0, 0.0)):
+    """A map as pages send it: columns one after another."""
+    matrix = np.eye(4)
+    i, j = (axis + 1) % 3, (axis + 2) % 3
+    matrix[i, i] = matrix[j, j] = np.cos(angle)
+    matrix[j, i] = np.sin(angle)
+    matrix[i, j] = -matrix[j, i]
+    matrix[:3, 3] = shift
+    return matrix
+
+
+def sent(matrix):
+    return matrix.T.reshape(-1).copy()
+
+
+def moved(points, matrix):
+    return points @ matrix[:3, :3].T + matrix[:3, 3]
+
+
+def begun(session, page, method="laplacian", layer=""):
+    structure = {} if layer else {"region": REGION.astype(np.uint32), "handle": HANDLE.astype(np.uint32)}
+    return page.ask(session, "surface.begin", {"layer": layer, "method": method}, **structure).head["layer"]
+
+
+def test_what_is_picked_is_what_the_library_finds(edited):
+    session, page = edited(Scene(BAR))
+    outline = np.array([[-0.5, -0.5], [0.6, -0.4], [0.1, 0.7]])
+    for visible in (False, True):
+        view = {"camera": sent(CAMERA)}
+        found = page.ask(session, "surface.within", {"visible": visible}, outline=outline.reshape(-1), **view)
+        assert found.arrays["index"].tolist() == in_lasso(BAR, CAMERA, outline, visible=visible).tolist()
+        stroke = {"visible": visible, "wide": 0.05, "high": 0.1}
+        found = page.ask(session, "surface.brush", stroke, path=outline.reshape(-1), **view)
+        expected = in_brush(BAR, CAMERA, outline, (0.05, 0.1), visible=visible)
+        assert found.arrays["index"].tolist() == expected.tolist()
+    start = np.array([7], np.uint32)
+    away = page.ask(session, "surface.distances", index=start).arrays["distances"]
+    assert np.flatnonzero(away <= 1.3).tolist() == regions.geodesic_ball(BAR, [7], 1.3).tolist()
+    for rings in (2, -3):
+        grown = page.ask(session, "surface.grow", {"rings": rings}, index=REGION.astype(np.uint32)).arrays["index"]
+        assert grown.tolist() == regions.grow(BAR, REGION, rings).tolist()
+
+
+def test_picking_is_of_the_shape_as_it_is_seen(edited):
+    shift = pl.Affine.translation([1.0, 0, 0])
+    session, page = edited(Scene(BAR, Stack((Layer("Shift", shift),))))
+    outline = np.array([[0.0, -1.0], [1.0, -1.0], [1.0, 1.0], [0.0, 1.0]]).reshape(-1)
+    found = page.ask(session, "surface.within", {"visible": False}, outline=outline, camera=sent(CAMERA))
+    assert found.arrays["index"].tolist() == np.flatnonzero((X + 1 >= 0) & (X + 1 < 2.5)).tolist()
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_a_drag_is_one_layer_that_the_library_computes_alike(edited, method):
+    session, page = edited(Scene(BAR))
+    matrix = turn(0.4, shift=(0.0, 0.1, 0.3))
+    layer = begun(session, page, method)
+    page.ask(session, "surface.move", matrix=sent(turn(0.2)))
+    page.ask(session, "surface.move", matrix=sent(matrix))
+    page.ask(session, "surface.commit")
+    assert len(session.history.entries) == 2
+    goal = moved(BAR.points[HANDLE], matrix)
+    expected = METHODS[method](REGION, HANDLE, goal=goal)
+    made = session.scene.stack[layer].deformer
+    assert type(made) is METHODS[method]
+    np.testing.assert_allclose(made.goal, goal, atol=1e-12)
+    np.testing.assert_allclose(session.shown.binding.result, expected(BAR).points, atol=1e-9)
+    page.ask(session, "history.undo")
+    assert not len(session.scene.stack)
+
+
+def test_arap_converges_while_the_handle_rests_and_methods_are_switched_on_the_same_drag(edited):
+    session, page = edited(Scene(BAR))
+    begun(session, page, "laplacian")
+    matrix = turn(0.9, shift=(0.0, 0.0, 0.4))
+    page.ask(session, "surface.move", matrix=sent(matrix))
+    answer = page.ask(session, "surface.move", {"method": "arap"})
+    energies = answer.arrays["energies"].tolist()
+    while not answer.arrays["converged"][0]:
+        answer = page.ask(session, "surface.move")
+        energies += answer.arrays["energies"].tolist()
+    assert (np.diff(energies) <= 1e-9 * energies[0]).all()  # a drag goes on where it was
+    goal = moved(BAR.points[HANDLE], matrix)
+    best = pl.ARAP(REGION, HANDLE).bind(BAR).solve(goal).energy
+    assert energies[-1] <= 1.02 * best
+    np.testing.assert_allclose(session.dragging._drag.points[HANDLE], goal, atol=1e-12)
+    page.ask(session, "surface.move", {"method": "skeleton"})
+    expected = pl.SkeletonEdit(REGION, HANDLE, goal=goal)(BAR).points
+    np.testing.assert_allclose(session.dragging._drag.points, expected, atol=1e-9)
+    page.ask(session, "surface.cancel")
+    assert not len(session.scene.stack)
+    np.testing.assert_array_equal(session.shown.binding.result, BAR.points)
+
+
+def test_a_handle_goes_where_it_is_dragged_above_layers_that_turn_it(edited):
+    bend = turn(0.7, axis=2, shift=(0.3, 0.0, 0.0))
+    session, page = edited(Scene(BAR, Stack((Layer("Turn", pl.Affine(bend)),))))
+    before = session.shown.binding.result[HANDLE].copy()
+    layer = begun(session, page)
+    matrix = turn(0.3, shift=(0.0, 0.2, 0.5))
+    page.ask(session, "surface.move", matrix=sent(matrix))
+    page.ask(session, "surface.commit")
+    np.testing.assert_allclose(session.shown.binding.result[HANDLE], moved(before, matrix), atol=1e-9)
+    again = turn(-0.2, shift=(0.1, 0.0, -0.2))  # the same layer goes on from there
+    begun(session, page, layer=layer)
+    page.ask(session, "surface.move", matrix=sent(again))
+    page.ask(session, "surface.commit")
+    np.testing.assert_allclose(session.shown.binding.result[HANDLE], moved(moved(before, matrix), again), atol=1e-9)
+    assert session.scene.stack.names == ("Turn", layer)
+
+
+def test_another_region_keeps_the_handle_where_the_edit_has_put_it(edited):
+    session, page = edited(Scene(BAR))
+    layer = begun(session, page)
+    page.ask(session, "surface.move", matrix=sent(turn(0.5)))
+    page.ask(session, "surface.commit")
+    was = session.shown.binding.result.copy()
+    wider, larger = np.flatnonzero(X > -1), np.flatnonzero(X > 1.5)
+    arrays = {"region": wider.astype(np.uint32), "handle": larger.astype(np.uint32)}
+    page.ask(session, "surface.restructure", {"layer": layer}, **arrays)
+    np.testing.assert_allclose(session.shown.binding.result[larger], was[larger], atol=1e-12)
+    told = page.ask(session, "surface.region", {"layer": layer})
+    assert told.arrays["region"].tolist() == wider.tolist()
+    assert told.arrays["handle"].tolist() == larger.tolist()
+    page.ask(session, "surface.method", {"layer": layer, "method": "arap"})
+    expected = pl.ARAP(wider, larger, goal=was[larger])(BAR).points
+    np.testing.assert_allclose(session.shown.binding.result, expected, atol=1e-12)
+
+
+def test_named_selections_and_edits_are_saved_with_the_scene(edited, tmp_path):
+    session, page = edited(Scene(BAR))
+    page.ask(session, "surface.keep", {"name": "tip"}, index=HANDLE.astype(np.uint32))
+    assert page.ask(session, "surface.part", {"part": "tip"}).arrays["index"].tolist() == HANDLE.tolist()
+    begun(session, page, "arap")
+    page.ask(session, "surface.move", matrix=sent(turn(0.3)))
+    page.ask(session, "surface.commit")
+    file = page.ask(session, "project.save").arrays["file"]
+    (tmp_path / "bar.pliant").write_bytes(file.tobytes())
+    again = pl.load_project(tmp_path / "bar.pliant")
+    assert again.selections["tip"].tolist() == HANDLE.tolist()
+    np.testing.assert_allclose(again.deformed().points, session.shown.binding.result, atol=1e-12)
+    page.ask(session, "surface.forget", {"name": "tip"})
+    assert not session.scene.selections
+
+
+def test_the_skeleton_goes_along_with_a_drag(edited):
+    session, page = edited(Scene(BAR))
+    assert not page.ask(session, "surface.skeleton", {"contours": 12}).head["known"]
+    session.jobs._pool.submit(lambda: None).result()
+    session.submit(lambda: None).result()
+    told = page.events("skeleton")[-1]
+    expected = pl.contour_skeleton(BAR, contours=12)
+    np.testing.assert_allclose(told.arrays["points"].reshape(-1, 3), expected.points, atol=1e-9)
+    assert told.arrays["groups"].tolist() == expected.groups.tolist()
+    begun(session, page)
+    answer = page.ask(session, "surface.move", matrix=sent(turn(0.3)))
+    now = session.dragging._drag.points
+    np.testing.assert_allclose(
+        answer.arrays["skeleton"].reshape(-1, 3), expected.following(now - BAR.points), atol=1e-12
+    )
+
+
+@pytest.mark.parametrize(
+    ("command", "values", "arrays", "cause"),
+    [
+        ("surface.within", {"visible": True}, {"outline": np.zeros(6), "camera": np.zeros(3)}, "16 numbers"),
+        ("surface.within", {"visible": True}, {"outline": np.zeros(5), "camera": np.eye(4)}, "two a place"),
+        (
+            "surface.brush",
+            {"visible": True, "wide": 0, "high": 1},
+            {"path": np.zeros(2), "camera": np.eye(4)},
+            "positive",
+        ),
+        (
+            "surface.brush",
+            {"visible": True, "wide": "a", "high": 1},
+            {"path": np.zeros(2), "camera": np.eye(4)},
+            "wide",
+        ),
+        ("surface.distances", {}, {"index": np.zeros(0, np.uint32)}, "no vertex"),
+        ("surface.keep", {"name": " "}, {"index": np.zeros(1, np.uint32)}, "needs a name"),
+        ("surface.forget", {"name": "none"}, {}, "no selection"),
+        ("surface.region", {"layer": "Shift"}, {}, "no region"),
+        ("surface.begin", {"method": "magic"}, {"region": HANDLE, "handle": HANDLE}, "no method"),
+        ("surface.begin", {"method": "arap"}, {"region": REGION, "handle": HANDLE[:0]}, "handle is empty"),
+        ("surface.begin", {"method": "arap"}, {"region": HANDLE, "handle": REGION}, "lie outside"),
+        ("surface.begin", {"method": "arap", "layer": "Shift"}, {}, "no region"),
+        ("surface.move", {}, {"matrix": np.eye(4)}, "no drag"),
+        ("surface.skeleton", {"contours": 0}, {}, "contours"),
+    ],
+)
+def test_bad_requests_are_refused(edited, command, values, arrays, cause):
+    session, page = edited(Scene(BAR, Stack((Layer("Shift", pl.Affine.translation([1.0, 0, 0])),))))
+    flat = {name: np.asarray(array).reshape(-1) for name, array in arrays.items()}
+    flat = {name: array.astype(np.uint32) if array.dtype.kind == "i" else array for name, array in flat.items()}
+    with pytest.raises(AssertionError, match=cause):
+        page.ask(session, command, values, **flat)
+    assert session.dragging is None
