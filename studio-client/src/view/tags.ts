@@ -37,7 +37,8 @@ export class Tags {
       const each = this.element.children[i] as HTMLElement;
       const { x, y, depth } = this.viewport.project(at);
       each.hidden = Math.abs(depth) > 1 || x < 0 || y < 0 || x > width || y > height || !this.viewport.helpers.visible;
-      each.style.translate = `${Math.round(x) + 12}px ${Math.round(y) - 11}px`;
+      const left = x + 24 + each.offsetWidth > width ? x - 12 - each.offsetWidth : x + 12;
+      each.style.translate = `${Math.round(left)}px ${Math.round(y) - 11}px`;
     });
   }
 }

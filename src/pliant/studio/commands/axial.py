@@ -98,8 +98,8 @@ def _along(deformer: AxialDeformer, axis: str) -> AxialDeformer:
     """A deformer about another axis; a normal that would be parallel to it gives way."""
     normal = getattr(deformer, "normal", None)
     if normal is None or np.linalg.norm(np.cross(unit_axis(normal), unit_axis(axis))) > _PARALLEL:
-        return replace(deformer, axis=axis)  # type: ignore[arg-type]
-    fields: dict[str, Any] = {"axis": axis, "normal": "zx"["z" == axis]}
+        return replace(deformer, axis=axis)
+    fields: dict[str, Any] = {"axis": axis, "normal": "zx"[axis == "z"]}
     return replace(deformer, **fields)
 
 
