@@ -64,13 +64,16 @@ def nearest_in(points, start, stop, corners, bounds, boxes, chosen, weights, dis
     """For points [start, stop) of (m, 3) the nearest of the triangles (t, 3, 3), and its squared distance.
 
     ``boxes`` (2 l, 6) is a binary tree, node 1 its root, 2 i and 2 i + 1 below i; leaf i < l, node l + i, holds the
-    triangles from bounds[i] to bounds[i + 1]. Each point begins with the triangle of the one before: near, as a rule.
+    triangles from bounds[i] to bounds[i + 1]. A point begins with the triangle that ``chosen`` names, or where that is
+    -1 with the one of the point before: near, as a rule.
     """
     leaves = len(bounds) - 1
     nodes, squares = np.empty(64, np.int64), np.empty(64)
     best = 0
     for i in range(start, stop):
         x, y, z = points[i, 0], points[i, 1], points[i, 2]
+        if chosen[i] >= 0:
+            best = chosen[i]
         best_v, best_w = _weights(corners, best, x, y, z)
         least = _square(corners, best, best_v, best_w, x, y, z)
         nodes[0], squares[0], waiting = 1, 0.0, 1

@@ -38,17 +38,20 @@ class TriangleSearch:
 
         corners = points[triangles]
         self._order = cKDTree(corners.mean(axis=1), leafsize=_LEAF).indices  # neighbours in space lie together
+        self._place = np.empty(len(corners), np.int64)
+        self._place[self._order] = np.arange(len(corners))
         self._corners = np.ascontiguousarray(corners[self._order])
         leaves = 1 << max(0, (len(corners) // _LEAF).bit_length() - 1)
         self._bounds = np.arange(leaves + 1) * len(corners) // leaves
         self._boxes = _boxes(self._corners, self._bounds)
 
-    def query(self, points: Floats) -> Closest:
-        """The closest points to (m, 3) points."""
+    def query(self, points: Floats, near: Integers | None = None) -> Closest:
+        """The closest points to (m, 3) points; ``near`` (m,) are triangles to begin with, at best the right ones."""
         from pliant.numerics.closest_kernels import nearest_in
 
         queries, count = np.ascontiguousarray(points), len(points)
-        chosen, weights, distance = np.empty(count, np.int64), np.empty((count, 3)), np.empty(count)
+        chosen = np.full(count, -1) if near is None else self._place[near]
+        weights, distance = np.empty((count, 3)), np.empty(count)
         for_chunks(
             lambda start, stop: nearest_in(
                 queries, start, stop, self._corners, self._bounds, self._boxes, chosen, weights, distance

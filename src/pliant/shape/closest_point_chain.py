@@ -119,9 +119,9 @@ class ClosestPointDensity:
         """(m, 3) from the shape's points to the closest ones, and (m, 3) the normals there, in the model's frame."""
         points = self._mean + self._columns @ state[self._free :]
         if not self._free:
-            places, normals, _ = self._target.correspondences(points, None)
-            return places - points, normals
+            found = self._target.correspondences(points, None)
+            return found.places - points, found.normals
         matrix = pose_matrix(state, self._center)
         posed, turn = moved(matrix, points), matrix[:3, :3]
-        places, normals, _ = self._target.correspondences(posed, None)
-        return (places - posed) @ turn, None if normals is None else normals @ turn
+        found = self._target.correspondences(posed, None)
+        return (found.places - posed) @ turn, None if found.normals is None else found.normals @ turn

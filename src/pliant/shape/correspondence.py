@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -15,6 +16,27 @@ from pliant.numerics.ragged import Ragged
 
 Floats = NDArray[np.float64]
 Booleans = NDArray[np.bool_]
+Integers = NDArray[np.int64]
+
+
+@dataclass(frozen=True)
+class Correspondences:
+    """What the points of a shape belong to.
+
+    Parameters
+    ----------
+    places, normals
+        (m, 3) the closest points of the target, and the unit normals there; None where it has no surface.
+    good
+        (m,) whether they can be believed.
+    triangles
+        (m,) in which triangles they are; None likewise.
+    """
+
+    places: Floats
+    normals: Floats | None
+    good: Booleans
+    triangles: Integers | None
 
 
 class Target:
@@ -37,17 +59,16 @@ class Target:
         """(m, 3) the closest points."""
         return self._query(points)[0]
 
-    def correspondences(self, points: Floats, normals: Floats | None) -> tuple[Floats, Floats | None, Booleans]:
-        """(m, 3) the closest points, (m, 3) the normals there, and (m,) whether they can be believed.
+    def correspondences(self, points: Floats, normals: Floats | None, near: Integers | None = None) -> Correspondences:
+        """The closest points, and whether they can be believed.
 
         Those on the border of an open target are not: what lies beyond it is not in the target. Nor are those whose
-        normal disagrees.
+        normal disagrees. The search is faster where ``near`` (m,) names triangles that are not far.
         """
-        places, found = self._query(points)
+        places, found = self._query(points, near)
         good = np.ones(len(points), bool)
         if found is None:
-            return places, None, good
-        there = self._normals[found.triangles]
+            return Correspondences(places, None, good, None)
         corners = self.mesh.triangles[found.triangles]
         if self._open.any():
             good &= ~((found.weights * ~self._open[corners]).sum(axis=1) < 1e-6)
@@ -55,11 +76,11 @@ class Target:
             smooth = np.einsum("mc,mcd->md", found.weights, self._smooth[corners])  # at a corner no one side counts
             length = np.linalg.norm(smooth, axis=1)
             good &= np.einsum("mi,mi->m", normals, smooth) >= self._least * length - 1e-12
-        return places, there, good
+        return Correspondences(places, self._normals[found.triangles], good, found.triangles)
 
-    def _query(self, points: Floats) -> tuple[Floats, Closest | None]:
+    def _query(self, points: Floats, near: Integers | None = None) -> tuple[Floats, Closest | None]:
         if len(self.mesh.triangles):
-            found = self._search.query(points)
+            found = self._search.query(points, near)
             return found.points, found
         return self.mesh.points[self._tree.query(points)[1]], None
 

@@ -106,8 +106,8 @@ class Energy:
         """The energy at a state, and its gradient."""
         coefficients, matrix = state[self._free :] * self._used, self.pose(state)
         posed = moved(matrix, np.asarray(self._rows.apply(coefficients, base=self._mean), np.float64))
-        places, _, good = self._target.correspondences(posed, None)
-        apart = posed - places
+        found = self._target.correspondences(posed, None)
+        apart, good = posed - found.places, found.good
         distance = np.linalg.norm(apart, axis=1) / self._noise
         pull = (robust.weights(distance, self._loss) * good)[:, None] * apart / self._noise**2
         energy = float(robust.losses(distance, self._loss) @ good + coefficients @ coefficients / 2)

@@ -173,6 +173,7 @@ class _Rounds:
         self._model, self._target, self._pose, self._loss, self._slide = model, target, pose, loss, slide
         self._coefficients, self._matrix, self._shape = np.zeros(model.count), np.eye(4), model.mean
         self._triangles = model.reference.triangles
+        self._near: NDArray[np.int64] | None = None
         self._chosen = np.arange(0, len(model.mean), -(-len(model.mean) // _MOST))
         self._rows = model.basis if len(self._chosen) == len(model.mean) else model.basis.rows(self._chosen)
         if pose is not None:
@@ -183,9 +184,10 @@ class _Rounds:
         posed = moved(self._matrix, self._shape)
         normals = vertex_normals(posed, self._triangles)[self._chosen] if len(self._triangles) else None
         posed = posed[self._chosen]
-        places, there, good = self._target.correspondences(posed, normals)
+        found = self._target.correspondences(posed, normals, self._near)
+        places, self._near = found.places, found.triangles
         distance = np.linalg.norm(places - posed, axis=1)
-        weights = robust.weights(distance / max(level, float(np.median(distance))), self._loss) * good
+        weights = robust.weights(distance / max(level, float(np.median(distance))), self._loss) * found.good
         used = np.flatnonzero(weights > 1e-6)
         if len(used) < 3:
             raise NotConverged(
@@ -199,8 +201,8 @@ class _Rounds:
         back = np.asarray(np.linalg.inv(self._matrix), np.float64)
         goals, size = moved(back, places[used]), float(np.linalg.det(back[:3, :3])) ** (1 / 3)
         precision = weights[used] / (level * size) ** 2
-        if there is not None and self._slide > 1.0:
-            directions = there[used] @ back[:3, :3].T / size
+        if found.normals is not None and self._slide > 1.0:
+            directions = found.normals[used] @ back[:3, :3].T / size
             precision = precision[:, None, None] * along_and_across(directions, 1.0, 1 / self._slide)
         new = self._conditioned(used, goals, Noise(precision, 0.0))
         step = new - self._shape
