@@ -66,6 +66,12 @@ class Jobs:
         self._pool.submit(self._work, job, work, done)
         return job
 
+    def tell(self, job: Job, part: float) -> None:
+        """Say how far a job is, from 0 to 1; on the session's thread."""
+        if job.name in self._running:
+            head = {"event": "progress", "job": job.name, "title": job.title, "part": part, "cancellable": True}
+            self._session.broadcast(Frame(head))
+
     def stop(self, name: str) -> None:
         """Ask a job to stop: its result will not count."""
         job = self._running.pop(name, None)

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 
 from pliant.errors import InvalidMesh, InvalidParameter
-from pliant.io import meshes, transforms
+from pliant.io import meshes, models, transforms
 from pliant.io.files import read_bytes
 from pliant.mesh import PolygonMesh
 from pliant.scene.project import load_project, save_project
@@ -18,6 +18,7 @@ from pliant.studio.frames import Frame
 from pliant.studio.request import Request, command
 from pliant.studio.samples import sample
 from pliant.studio.session import Session
+from pliant.studio.shape_models import model_scene
 
 PROJECT = ".pliant"
 MOST_POINTS = 8_000_000
@@ -110,7 +111,7 @@ def listing(session: Session, request: Request) -> Frame:
     folder = inside(session.root, request.text("folder", ""))
     if not folder.is_dir():
         raise InvalidParameter("this folder is gone")
-    endings = (PROJECT, *(suffix for each in meshes.formats() for suffix in each["suffixes"]))
+    endings = (PROJECT, ".h5", ".h5.json", *(suffix for each in meshes.formats() for suffix in each["suffixes"]))
     entries = sorted((each for each in folder.iterdir() if not each.name.startswith(".")), key=lambda each: each.name)
     folders = [each.name for each in entries if each.is_dir()][:_MOST_ENTRIES]
     files = [each.name for each in entries if each.is_file() and each.name.lower().endswith(endings)]
@@ -118,20 +119,23 @@ def listing(session: Session, request: Request) -> Frame:
 
 
 def read_scene(path: Path) -> Scene:
-    """The scene of a project, or of a mesh.
+    """The scene of a project, of a shape model, or of a mesh.
 
     Raises
     ------
     InvalidMesh
         No points, or more than a browser can draw.
     """
-    scene = load_project(path) if path.suffix.lower() == PROJECT else Scene(meshes.read(path))
+    if path.suffix.lower() == PROJECT:
+        scene = load_project(path)
+    else:
+        scene = model_scene(models.read_model(path)) if holds_model(path) else Scene(meshes.read(path))
     _require_drawable(scene.mesh, path.name)
     return scene
 
 
 def main_file(paths: list[Path]) -> Path:
-    """The file that others belong to: a project, else a mesh, else a transform.
+    """The file that others belong to: a project, else a mesh, a shape model, a transform.
 
     Raises
     ------
@@ -143,11 +147,12 @@ def main_file(paths: list[Path]) -> Path:
         for path in paths:
             if path.name.lower().removesuffix(".gz").endswith(tuple(wanted)) and not _is_transform(path):
                 return path
-    for path in paths:
-        if _is_transform(path):
-            return path
+    for holds in (holds_model, _is_transform):
+        for path in paths:
+            if holds(path):
+                return path
     names = ", ".join(path.name for path in paths)
-    raise InvalidParameter(f"{names}: neither a mesh, a project nor a deformation that pliant reads")
+    raise InvalidParameter(f"{names}: neither a mesh, a model, a project nor a deformation that pliant reads")
 
 
 def _open(session: Session, path: Path, name: str) -> Frame:
@@ -156,9 +161,14 @@ def _open(session: Session, path: Path, name: str) -> Frame:
     return Frame({"notes": []})
 
 
+def holds_model(path: Path) -> bool:
+    """Whether a file is a shape model, by its content where its ending may be another's too."""
+    return path.is_file() and path.name.lower().endswith(models.ENDINGS) and models.is_model(path)
+
+
 def _is_transform(path: Path) -> bool:
     """By its content where its ending may be a mesh's too."""
-    if not path.is_file():
+    if not path.is_file() or holds_model(path):
         return False
     with path.open("rb") as stream:
         head = stream.read(1 << 16)
