@@ -15,6 +15,7 @@ GALLERY = Path(__file__).parents[1] / "docs" / "gallery"
 PICTURES = os.environ.get("PLIANT_PICTURES")  # a folder for pictures in full size, as the documentation shows them
 SCRIPTS = sorted(path.stem for path in GALLERY.glob("*.py") if path.stem not in {"bodies", "shapes"})
 NUMBERS = {
+    "affine": (1.0, 1e-12),  # a shear keeps volume
     "arap": (0.99, 0.0099),  # below one: the energy only decreases
     "bend": (1.0, 1e-6),  # the bent axis keeps its length
     "bezier_ffd": (0.8, 0.2),  # the least volume ratio of the vase's dance: nothing folds
@@ -39,16 +40,22 @@ NUMBERS = {
     "face_turntable": (24.0, 0.0),  # thirteen views there, and back
     "flare": (0.244132, 1e-5),  # the square of the narrowest scale
     "fold_certificate": (0.391395, 1e-3),  # the step at which the first fold begins
+    "from_the_formula": (0.0, 1e-14),  # the formula and the library agree
     "hero": (3.0, 0.0),  # panels
+    "inverse": (0.0, 1e-8),  # there and back
     "key_frames": (0.0, 0.02),  # both keep the volume; the mesh is coarse
     "laplacian_edit": (0.0, 1e-12),  # the handle is held
     "local_support": (0.125563, 1e-5),
+    "performance": (0.0, 1e-12),  # the figure ends as it began
     "place": (0.0, 0.0),  # no point is moved by the tool everywhere it goes
     "pull": (0.0, 1e-12),  # held points are where they shall be
     "radial_basis_warp": (0.5776875, 1e-4),  # the part of the points that nothing reaches
     "random_fields": (3.6848, 0.2),  # the narrowest kernel bends space most
+    "random_variants": (0.0, 0.0),  # whoever draws them
     "read_write_ffd": (0.0, 1e-7),  # the digits that the file keeps
+    "registered_organ": (0.1869, 0.01),  # above zero: nothing folds
     "scale": (1.6 * 1.1 * 0.6, 1e-12),
+    "shape_keys": (0.0, 1e-15),  # all keys together are the stack
     "shape_model_modes": (0.9839, 1e-3),  # the variance in the first ten fields
     "shape_model_samples": (0.9962, 1e-3),  # the variance in the first twenty fields
     "shape_uncertainty": (0.0, 1e-3),  # the mean passes through what was seen
@@ -68,6 +75,7 @@ NUMBERS = {
     "volume_keeping": (0.0, 1e-12),  # nothing is missing
     "warped_grid": (0.4, 0.1),  # the longest displacement, in diagonals
     "wave": (0.0, 1e-12),  # there and back
+    "wetted_area": (0.0, 1e-5),  # the volume is kept
 }
 
 

@@ -25,6 +25,13 @@ FIGURE = [
     )],
 ]  # fmt: skip
 
+# two lobes, and the vessel that leaves them, in decimetres
+ORGAN = [
+    ((-0.58, 0.0, 0.0), (-0.2, 0.06, 0.12), 0.36, 0.37), ((-0.2, 0.06, 0.12), (0.3, 0.0, 0.12), 0.36, 0.25),
+    ((0.3, 0.0, 0.12), (0.78, -0.1, 0.05), 0.24, 0.1), ((-0.62, 0.05, -0.12), (-0.5, 0.1, -0.24), 0.3, 0.22),
+    ((-0.05, -0.15, -0.1), (0.06, -0.2, -0.4), 0.08, 0.06), ((0.06, -0.2, -0.4), (0.22, -0.16, -0.6), 0.06, 0.055),
+]  # fmt: skip
+
 
 @cache
 def figure(spacing: float = 0.025) -> PolygonMesh:
@@ -42,6 +49,13 @@ def horse(spacing: float = 0.03) -> tuple[PolygonMesh, np.ndarray]:
 def camel(spacing: float = 0.035) -> tuple[PolygonMesh, np.ndarray]:
     """A camel about as long, of another number of vertices, and the vertices at the same joints."""
     return _quadruped(1.12, (-1.02, 1.5), (-1.3, 1.44), 0.085, 0.26, spacing)
+
+
+@cache
+def organ(spacing: float = 3.0) -> PolygonMesh:
+    """An organ of two lobes and a vessel, about 200 mm long."""
+    body = _molten(ORGAN, spacing / 100)
+    return body.with_points(100 * body.points)
 
 
 def _quadruped(height, poll, muzzle, neck, hump, spacing):
@@ -86,7 +100,8 @@ def _molten(limbs, spacing: float) -> PolygonMesh:
     """The surface of round cones, blended by a smooth minimum of their distances."""
     ends = np.array([[a, b] for a, b, _, _ in limbs], float)
     radii = np.array([[r, s] for _, _, r, s in limbs])
-    low, high = ends.reshape(-1, 3).min(axis=0) - 0.3, ends.reshape(-1, 3).max(axis=0) + 0.3
+    wide = max(0.3, radii.max() + 0.05)
+    low, high = ends.reshape(-1, 3).min(axis=0) - wide, ends.reshape(-1, 3).max(axis=0) + wide
     size = np.ceil((high - low) / spacing).astype(int) + 1
     grid = pyvista.ImageData(dimensions=size, spacing=(spacing,) * 3, origin=low)
     places, blend = np.asarray(grid.points), np.zeros(grid.n_points)
