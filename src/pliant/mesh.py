@@ -291,7 +291,14 @@ def _require_finite(points: Points) -> None:
 
 
 def _require_vertices(rows: Ragged | None, count: int, kind: str) -> None:
-    if rows is None or not rows.flat.size or 0 <= rows.flat.min() <= rows.flat.max() < count:
+    if rows is None:
+        return
+    ends = rows.offsets
+    if ends.ndim != 1 or rows.flat.ndim != 1 or not len(ends) or ends[0] or ends[-1] != len(rows.flat):
+        raise InvalidMesh(f"the rows of the {kind}s do not make up their {rows.flat.size:,} corners")
+    if len(rows) and rows.lengths.min() < 0:
+        raise InvalidMesh(f"{kind} {rows.lengths.argmin()} ends before it begins")
+    if not rows.flat.size or 0 <= rows.flat.min() <= rows.flat.max() < count:
         return
     at = int(np.flatnonzero((rows.flat < 0) | (rows.flat >= count))[0])
     raise InvalidMesh(f"{kind} {rows.row_of[at]} uses vertex {rows.flat[at]}; there are {count} vertices")

@@ -258,8 +258,8 @@ BROKEN = {
     "empty.mdd": ("mdd", lambda data: b"", "the file is empty"),
     "cut.glb": ("glb", lambda data: data[:200], "cut off"),
     "still.gltf": ("gltf", lambda data: data.replace(b'"animations"', b'"extras"'), "it holds no animation"),
-    "cut.usdc": ("usdc", lambda data: data[: len(data) // 2], "USD cannot open it|holds no mesh"),
-    "cut.abc": ("abc", lambda data: data[:50], "no sound Alembic|holds no mesh"),
+    "cut.usdc": ("usdc", lambda data: data[: len(data) // 2], "USD cannot read it|holds no mesh"),
+    "cut.abc": ("abc", lambda data: data[:50], "Alembic cannot read it|holds no mesh"),
     "upwards.pvd": ("pvd", lambda data: data.replace(b"clip_frames", b"../../etc"), "refers to nothing outside"),
     "missing.pvd": ("pvd", lambda data: data.replace(b"00002.vtp", b"00099.vtp"), "No such file"),
     "entities.pvd": (

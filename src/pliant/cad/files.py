@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -11,7 +12,9 @@ from pliant.cad.kernel import kernel
 from pliant.cad.part import Part
 from pliant.errors import UnreadableFile, UnsupportedFormat, UnwritableFile
 from pliant.io.files import read_bytes, replacing
+from pliant.io.polydata_process import run
 
+_CURE = "export it again, as STEP AP214 or AP242"
 _STEP, _IGES = (".step", ".stp"), (".iges", ".igs")
 
 
@@ -27,12 +30,15 @@ def read(path: Path | str) -> Part:
     MissingExtra
         Open CASCADE is not installed.
     """
+    of_kind(path, "STEPControl_Reader", "IGESControl_Reader")
     read_bytes(path)
-    reader = _of_kind(path, "STEPControl_Reader", "IGESControl_Reader")
-    with _silence():
-        if reader.ReadFile(str(path)) != kernel("IFSelect").IFSelect_RetDone or not reader.TransferRoots():
-            raise UnreadableFile(path, "the kernel finds no shape in it", "export it again, as STEP AP214 or AP242")
-    return Part(reader.OneShape())
+    with tempfile.TemporaryDirectory(prefix="pliant-") as folder:
+        copy = Path(folder, "part.bin")
+        run(Path(path), copy, "part", child="pliant.cad.child", reader="Open CASCADE")
+        shape = kernel("TopoDS").TopoDS_Shape()
+        if not kernel("BinTools").BinTools.Read_s(shape, str(copy)):
+            raise UnreadableFile(path, "the kernel finds no shape in it", _CURE)
+    return Part(shape)
 
 
 def write(part: Part, path: Path | str) -> None:
@@ -45,8 +51,8 @@ def write(part: Part, path: Path | str) -> None:
     UnwritableFile
         The kernel could not write it.
     """
-    writer = _of_kind(path, "STEPControl_Writer", "IGESControl_Writer")
-    with _silence(), replacing(path) as temporary:
+    writer = of_kind(path, "STEPControl_Writer", "IGESControl_Writer")
+    with silence(), replacing(path) as temporary:
         if Path(path).suffix.lower() in _STEP:
             writer.Transfer(part.shape, kernel("STEPControl").STEPControl_AsIs)
             done = writer.Write(str(temporary)) == kernel("IFSelect").IFSelect_RetDone
@@ -56,7 +62,8 @@ def write(part: Part, path: Path | str) -> None:
             raise UnwritableFile(path, "the kernel refused the part")
 
 
-def _of_kind(path: Path | str, step: str, iges: str) -> Any:
+def of_kind(path: Path | str, step: str, iges: str) -> Any:
+    """A reader or writer of the kernel, by the ending of a file."""
     suffix = Path(path).suffix.lower()
     if suffix not in (*_STEP, *_IGES):
         raise UnsupportedFormat(f"{path}: parts are STEP ({', '.join(_STEP)}) or IGES ({', '.join(_IGES)})")
@@ -65,7 +72,7 @@ def _of_kind(path: Path | str, step: str, iges: str) -> Any:
 
 
 @contextmanager
-def _silence() -> Iterator[None]:
+def silence() -> Iterator[None]:
     """Keep the kernel from printing what it does."""
     messenger = kernel("Message").Message.DefaultMessenger_s()
     printers = list(messenger.Printers())

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import hashlib
 import io
-import zipfile
 from pathlib import Path
 from typing import Any
 
@@ -81,8 +80,8 @@ def read_binding(cage: Cage, target: PolygonMesh | ArrayLike, path: Path | str) 
     """
     points = as_points(target)
     arrays = _arrays(Path(path))
-    if int(arrays["layout"]) != _LAYOUT:
-        raise UnreadableFile(path, f"its layout is {int(arrays['layout'])}; {_LAYOUT} is known", "bind and write anew")
+    if arrays["layout"].tolist() != _LAYOUT:
+        raise UnreadableFile(path, f"its layout is {arrays['layout']}; {_LAYOUT} is known", "bind and write anew")
     if str(arrays["digest"]) != _digest(cage, points):
         raise UnreadableFile(
             path,
@@ -91,10 +90,12 @@ def read_binding(cage: Cage, target: PolygonMesh | ArrayLike, path: Path | str) 
         )
     try:
         tables = [_table(arrays, name) for name in _NAMES]
-    except (KeyError, ValueError) as error:
+    except (KeyError, ValueError, TypeError, OverflowError) as error:
         raise UnreadableFile(path, f"the weights are damaged: {error}", "bind and write anew") from error
     if tables[0] is None:
         raise UnreadableFile(path, "it holds no weights", "bind and write anew")
+    if any(table is not None and table.shape[0] != len(points) for table in tables):
+        raise UnreadableFile(path, "the weights are damaged: not one row a point", "bind and write anew")
     return cage.bound(points, tables[0], tables[1])
 
 
@@ -113,8 +114,8 @@ def _arrays(path: Path) -> dict[str, NDArray[Any]]:
     data = read_bytes(path)
     try:
         with np.load(io.BytesIO(data), allow_pickle=False) as stored:
-            arrays = dict(stored)
-    except (ValueError, OSError, EOFError, KeyError, zipfile.BadZipFile) as error:
+            arrays = {name: np.asarray(array) for name, array in stored.items()}
+    except Exception as error:  # whatever the parsers of zip and .npy say of damaged bytes
         raise UnreadableFile(path, f"it is no file of weights: {error}", "bind and write anew") from error
     if not {"layout", "digest"} <= set(arrays):
         raise UnreadableFile(path, "it is no file of weights: no digest", "bind and write anew")
@@ -123,8 +124,17 @@ def _arrays(path: Path) -> dict[str, NDArray[Any]]:
 
 def _table(arrays: dict[str, NDArray[Any]], name: str) -> WeightTable | None:
     if name in arrays:
-        return WeightTable(arrays[name])
+        return WeightTable(_finite(arrays[name]))
     if f"{name}_values" not in arrays:
         return None
     parts = tuple(arrays[f"{name}_{part}"] for part in ("values", "columns", "starts"))
-    return WeightTable(csr_array(parts, shape=tuple(int(n) for n in arrays[f"{name}_shape"])))
+    _finite(parts[0])
+    matrix = csr_array(parts, shape=tuple(int(n) for n in arrays[f"{name}_shape"]))
+    matrix.check_format(full_check=True)  # an index beyond the columns would read what is not there
+    return WeightTable(matrix)
+
+
+def _finite(values: NDArray[Any]) -> NDArray[Any]:
+    if values.dtype.kind != "f" or not np.isfinite(values).all():
+        raise ValueError("some are no finite numbers")
+    return values

@@ -48,6 +48,8 @@ def _parts(path: Path, stored: Any, most: int) -> list[Part]:
     parts = []
     for name in names:
         place = f"{_GROUP}/{name}"
+        if not hasattr(group[name], "keys"):
+            raise UnreadableFile(path, f"{place} is no transform", "the file is damaged")
         kind = _text(path, group[name].get("TransformType"), place)
         fixed, values = (_numbers(path, group[name], word, place, most) for word in ("FixedParameters", "Parameters"))
         parts.append(Part(kind, fixed, values, place))

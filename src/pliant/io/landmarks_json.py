@@ -73,7 +73,10 @@ def read_markups(path: Path, data: bytes) -> Landmarks:
         raise UnreadableFile(path, f"coordinate systems {sorted(spaces)}", "one of LPS and RAS is understood")
     names, points, words = [], [], []
     for markup in markups:
-        for at, entry in enumerate(markup.get("controlPoints") or []):
+        entries = markup.get("controlPoints") or []
+        if not isinstance(entries, list):
+            raise UnreadableFile(path, f"the control points are {entries!r}", "save it again from Slicer as .mrk.json")
+        for at, entry in enumerate(entries):
             if not isinstance(entry, dict):
                 raise UnreadableFile(path, f"control point {at} is {entry!r}", "each needs a label and a position")
             if entry.get("positionStatus", "defined") != "defined":

@@ -124,7 +124,8 @@ def _guessed(table: Floats) -> dict[str, list[int]]:
     for first in range(3, table.shape[1] - 2, 3):
         columns = [first, first + 1, first + 2]
         part = table[:, columns]
-        if "normals" not in result and (np.abs(np.linalg.norm(part, axis=1) - 1) < 0.01).all():
+        lengths = np.linalg.norm(np.clip(part, -2, 2), axis=1)  # of huge numbers the squares are not finite
+        if "normals" not in result and (np.abs(lengths - 1) < 0.01).all():
             result["normals"] = columns
         elif "colors" not in result and _colors(part).dtype == np.uint8:
             result["colors"] = columns

@@ -10,7 +10,8 @@ from __future__ import annotations
 
 import json
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -106,6 +107,24 @@ def _grid(data: Any, kind: str, to_numpy: Callable[[Any], NDArray[Any]]) -> NDAr
     table = np.array([[matrix.GetElement(i, j) for j in range(4)] for i in range(3)])
     points: NDArray[Any] = index @ table[:, :3].T + table[:, 3]
     return points
+
+
+class Refused(Exception):
+    """What a reading process has against a file, in words."""
+
+
+@contextmanager
+def refusing() -> Iterator[None]:
+    """End the process with one line on the standard error, whatever is raised."""
+    try:
+        yield
+    except Exception as error:  # whatever a library says of a damaged file
+        try:
+            said = " ".join(str(error).split())
+        except UnicodeDecodeError:  # libraries quote bytes of the file
+            said = type(error).__name__
+        sys.stderr.write(f"\nError: {said}\n")
+        sys.exit(REFUSED)
 
 
 def limit(memory: int, seconds: int) -> None:

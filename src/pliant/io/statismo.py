@@ -58,7 +58,7 @@ def model_of(tree: Tree, path: Path, prefix: str | None = None) -> ShapeModel:
             mean.reshape(-1, 3),
             factored(np.ascontiguousarray(fields).reshape(count, 3, len(deviations)), deviations),
             cells=cells if cells is not None and cells.shape[1] == 4 else None,
-            convention="continuous" if tree.values.get(_CONVENTION) == "continuous" else "discrete",
+            convention="continuous" if str(tree.values.get(_CONVENTION)) == "continuous" else "discrete",
             noise_variance=_noise(tree, found),
             carrier=tree,
         )

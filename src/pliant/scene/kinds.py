@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, NamedTuple
 
+import numpy as np
 from numpy.typing import NDArray
 
 from pliant.deformer import Deformer, SpaceDeformer
@@ -19,6 +20,9 @@ from pliant.mesh import PolygonMesh
 from pliant.scene.fields import Field, arguments_of, fields_of, plain
 from pliant.scene.rooms import deformer_classes, kind_name
 from pliant.scene.values import Arrays, encode_fields, make
+
+MOST_CONTROLS = 10_000_000  # of what is laid by a description: one that asks for more asks for the whole machine
+_COUNTS = {"shape", "patches"}
 
 
 class Description(NamedTuple):
@@ -103,6 +107,9 @@ class Kind:
             if name not in known:
                 raise InvalidParameter(f"{maker} of a {self.name} knows no {name!r}; it knows: {', '.join(known)}")
         try:
+            for name in _COUNTS & set(given):
+                if np.prod(np.asarray(given[name], np.float64)) > MOST_CONTROLS:
+                    raise InvalidParameter(f"a {self.name} of {given[name]} has more than {MOST_CONTROLS:,} controls")
             laid: Deformer = getattr(self.cls, maker)(target, **given)
         except PliantError:
             raise

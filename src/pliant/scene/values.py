@@ -149,14 +149,14 @@ def _stored(data: dict[str, Any], arrays: Mapping[str, NDArray[Any]]) -> NDArray
             return np.array(name, _DTYPES[data.get("dtype", "float64")])
         except (TypeError, ValueError, KeyError) as error:
             raise InvalidParameter(f"an array is not one of numbers: {error}") from error
-    if name not in arrays:
+    if not isinstance(name, str) or name not in arrays:
         raise InvalidParameter(f"the array {name!r} is missing")
     return arrays[name]
 
 
 def _named(tag: str, name: Any) -> type[Any]:
     known = deformer_classes() if tag == "kind" else records()
-    if name not in known:
+    if not isinstance(name, str) or name not in known:
         what = f"deformers are: {', '.join(known)}" if tag == "kind" else "a newer version of pliant may know it"
         raise InvalidParameter(f"there is no {tag} {name!r} ({what})")
     return known[name]

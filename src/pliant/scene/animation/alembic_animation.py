@@ -5,7 +5,6 @@ Alembic winds polygons the other way round; they are turned when they are writte
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -13,11 +12,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pliant._version import __version__
-from pliant.errors import MissingExtra, UnreadableFile
+from pliant.errors import MissingExtra
 from pliant.io.files import replacing
 from pliant.io.losses import as_float32
+from pliant.io.polydata_process import read_path
 from pliant.io.report import LossReport
-from pliant.mesh import Points, PolygonMesh
+from pliant.mesh import PolygonMesh
 from pliant.scene.clip import Clip, Progress
 from pliant.scene.sequence import MeshSequence
 
@@ -43,48 +43,9 @@ def write_clip(clip: Clip, path: Path, progress: Progress | None, *, name: str =
 
 def read(path: Path, _fps: float) -> MeshSequence:
     """The points of all meshes of the archive, in its order, where their transforms put them."""
-    alembic, _ = _alembic()
-    if not path.is_file():
-        raise UnreadableFile(path, "there is no such file", "check the path")
-    try:
-        top = alembic.Abc.IArchive(str(path)).getTop()
-        found = list(_meshes(alembic, top, ()))
-    except RuntimeError as error:
-        raise UnreadableFile(path, f"it is no sound Alembic archive: {error}", "export it again") from error
-    if not found:
-        raise UnreadableFile(path, "it holds no mesh", "export it with its meshes")
-    times = sorted({time for schema, above in found for each in (schema, *above) for time in _times(each)})
-    frames = [np.concatenate([_world(alembic, schema, above, time) for schema, above in found]) for time in times]
-    if len({len(frame) for frame in frames}) > 1:
-        raise UnreadableFile(path, "its number of points changes over time: that is not one mesh that moves")
-    return MeshSequence(np.stack(frames), np.array(times))
-
-
-def _meshes(alembic: Any, parent: Any, above: tuple[Any, ...]) -> Iterator[tuple[Any, tuple[Any, ...]]]:
-    """Each mesh below an object, with the transforms above it, the nearest first."""
-    for i in range(parent.getNumChildren()):
-        child = parent.getChild(i)
-        kind = str(child.getMetaData().get("schema"))
-        if "PolyMesh" in kind:
-            yield alembic.AbcGeom.IPolyMesh(parent, child.getName()).getSchema(), above
-        chain = above
-        if "Xform" in kind:
-            chain = (alembic.AbcGeom.IXform(parent, child.getName()).getSchema(), *above)
-        yield from _meshes(alembic, child, chain)
-
-
-def _times(schema: Any) -> list[float]:
-    sampling = schema.getTimeSampling()
-    return [float(sampling.getSampleTime(i)) for i in range(schema.getNumSamples())]
-
-
-def _world(alembic: Any, schema: Any, above: tuple[Any, ...], time: float) -> Points:
-    at = alembic.Abc.ISampleSelector(time)
-    points = np.array(schema.getValue(at).getPositions(), np.float64)
-    for transform in above:
-        matrix = np.array(transform.getValue(at).getMatrix(), np.float64).reshape(4, 4)
-        points = points @ matrix[:3, :3] + matrix[3, :3]
-    return points
+    _alembic()
+    arrays, _ = read_path(path, "motion", child="pliant.scene.animation.alembic_child", reader="Alembic")
+    return MeshSequence(arrays["points"], arrays["times"])
 
 
 def _turned(mesh: PolygonMesh) -> NDArray[np.int32]:

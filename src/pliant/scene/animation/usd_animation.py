@@ -8,11 +8,12 @@ from typing import Any
 
 import numpy as np
 
-from pliant.errors import MissingExtra, UnreadableFile
+from pliant.errors import MissingExtra
 from pliant.io.files import replacing
 from pliant.io.losses import as_float32
+from pliant.io.polydata_process import read_path
 from pliant.io.report import LossReport
-from pliant.mesh import Points, PolygonMesh
+from pliant.mesh import PolygonMesh
 from pliant.scene.clip import Clip, Progress
 from pliant.scene.sequence import MeshSequence
 
@@ -43,22 +44,9 @@ def write_clip(clip: Clip, path: Path, progress: Progress | None, *, name: str =
 
 def read(path: Path, fps: float) -> MeshSequence:
     """The points of all meshes of the stage, in its order, at every time at which one is sampled."""
-    pxr = _pxr()
-    if not path.is_file():
-        raise UnreadableFile(path, "there is no such file", "check the path")
-    try:
-        stage = pxr.Usd.Stage.Open(str(path))
-        meshes = [pxr.UsdGeom.Mesh(prim) for prim in stage.Traverse() if prim.IsA(pxr.UsdGeom.Mesh)]
-    except pxr.Tf.ErrorException as error:
-        raise UnreadableFile(path, f"USD cannot open it: {str(error).splitlines()[0]}", "export it again") from error
-    codes = sorted({code for mesh in meshes for code in _samples(pxr, mesh)})
-    if not meshes or not codes:
-        raise UnreadableFile(path, "it holds no mesh whose points move", "export it with its animation")
-    rate = stage.GetTimeCodesPerSecond() or fps
-    frames = [np.concatenate([_world(pxr, mesh, code, path) for mesh in meshes]) for code in codes]
-    if len({len(frame) for frame in frames}) > 1:
-        raise UnreadableFile(path, "its number of points changes over time: that is not one mesh that moves")
-    return MeshSequence(np.stack(frames), np.array(codes) / rate)
+    _pxr()
+    arrays, _ = read_path(path, repr(fps), child="pliant.scene.animation.usd_child", reader="USD")
+    return MeshSequence(arrays["points"], arrays["times"])
 
 
 def _describe(pxr: Any, stage: Any, prim: Any, mesh: PolygonMesh, folder: Path) -> tuple[str, ...]:
@@ -118,26 +106,6 @@ def _beside(picture: Path, folder: Path) -> str:
         return "./" + picture.resolve().relative_to(folder.resolve()).as_posix()
     except ValueError:
         return picture.resolve().as_posix()
-
-
-def _samples(pxr: Any, mesh: Any) -> list[float]:
-    """The times at which a mesh or a node above it changes."""
-    times = list(mesh.GetPointsAttr().GetTimeSamples())
-    prim = mesh.GetPrim()
-    while prim and not prim.IsPseudoRoot():
-        if prim.IsA(pxr.UsdGeom.Xformable):
-            times += pxr.UsdGeom.Xformable(prim).GetTimeSamples()
-        prim = prim.GetParent()
-    return times
-
-
-def _world(pxr: Any, mesh: Any, code: float, path: Path) -> Points:
-    points = mesh.GetPointsAttr().Get(code)
-    if points is None:
-        raise UnreadableFile(path, f"the mesh {mesh.GetPath()} has no points at time {code:g}")
-    matrix = np.array(pxr.UsdGeom.Imageable(mesh).ComputeLocalToWorldTransform(code), np.float64)
-    placed: Points = np.asarray(points, np.float64).reshape(-1, 3) @ matrix[:3, :3] + matrix[3, :3]
-    return placed
 
 
 def _pxr() -> Any:

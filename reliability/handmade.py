@@ -1,4 +1,4 @@
-"""Small files of every mesh format, made here, that between them use every part of the readers."""
+"""Small files written by hand that between them use every part of the readers of text, and of simple binary formats."""
 
 from __future__ import annotations
 
@@ -175,22 +175,80 @@ def threemf() -> bytes:
     return out.getvalue()
 
 
-SEEDS = {
-    "obj": OBJ,
-    "obj-colors": OBJ_COLORS,
-    "off": OFF,
-    "off-all": OFF_ALL,
-    "off-loose": OFF_LOOSE,
-    "off-binary": off_binary(),
-    "stl-text": STL_TEXT,
-    "stl-binary": stl_binary(),
-    "csv": b"id,x,y,z,nx,ny,nz,heat\n1,0,0,0,0,0,1,2.5\n2,1,0,0,0,0,1,3\n3,0,1,0,0,0,1,4\n",
-    "xyz": b"# a cloud\n0 0 0 255 0 0\n1 0 0 0 255 0\n0 1e-3 0 0 0 255\n",
-    "glb": gltf(binary=True),
-    "gltf": gltf(binary=False),
-    "3mf": threemf(),
-    "ply-text": PLY_TEXT,
-    "ply-little": ply_binary("<"),
-    "ply-big": ply_binary(">"),
-    "ply-strips": ply_strips(),
+MESHES = {
+    "all.obj": OBJ,
+    "colors.obj": OBJ_COLORS,
+    "usual.off": OFF,
+    "all.off": OFF_ALL,
+    "loose.off": OFF_LOOSE,
+    "binary.off": off_binary(),
+    "text.stl": STL_TEXT,
+    "binary.stl": stl_binary(),
+    "table.csv": b"id,x,y,z,nx,ny,nz,heat\n1,0,0,0,0,0,1,2.5\n2,1,0,0,0,0,1,3\n3,0,1,0,0,0,1,4\n",
+    "cloud.xyz": b"# a cloud\n0 0 0 255 0 0\n1 0 0 0 255 0\n0 1e-3 0 0 0 255\n",
+    "placed.glb": gltf(binary=True),
+    "placed.gltf": gltf(binary=False),
+    "twice.3mf": threemf(),
+    "text.ply": PLY_TEXT,
+    "little.ply": ply_binary("<"),
+    "big.ply": ply_binary(">"),
+    "strips.ply": ply_strips(),
 }
+
+_SLICER = "# Markups fiducial file version = 4.13\n# CoordinateSystem = LPS\n"
+_COLUMNS = "# columns = id,x,y,z,ow,ox,oy,oz,vis,sel,lock,label,desc,associatedNodeID\n"
+LANDMARKS = {
+    "named.csv": b"name,x,y,z\nnose,1,2,3\nleft ear,-4.5,5e-1,6\n",
+    "semicolons.csv": "\ufeff# made by hand\n\na;1;2;3\r\nb;4;5;6\r\n".encode(),
+    "scalismo.json": b'[{"id": "nose", "coordinates": [1.0, 2.0, 3.0], "uncertainty": {"stddevs": [1.0, 2.0, 3.0], '
+    b'"pcvectors": [[1, 0, 0], [0, 1, 0], [0, 0, 1]]}}, {"id": "chin", "description": "low", "coordinates": [4, 5, 6]}'
+    b"]",
+    "slicer.mrk.json": b'{"markups": [{"type": "Fiducial", "coordinateSystem": "LPS", "controlPoints": '
+    b'[{"label": "F-1", "position": [1, 2, 3.5], "positionStatus": "defined", "description": "tip"}, {"label": "F-2", '
+    b'"position": [0, 0, 0], "positionStatus": "undefined"}]}]}',
+    "slicer.fcsv": (_SLICER + _COLUMNS + '0,-19.9,13.9,29.4,0,0,0,1,1,1,0,"F,1",,\n').encode(),
+}
+
+PAIRS = {"pairs.txt": b"# source target\n0 0\n1 2\n2, 1\n"}
+
+RECIPE = b"""# words, numbers, percents and keys
+pliant = 1
+title = "Turn and taper"
+about = "All that recipes have."
+duration = 2.0
+fps = 12
+ending = "ping-pong"
+
+[[layer]]
+name = "turn"
+kind = "twist"
+around = true
+axis = "z"
+angle = 90
+envelope = 0.8
+
+[[layer]]
+name = "taper"
+kind = "taper"
+around = true
+factor = 0.5
+profile = [[0, 0], [0.5, 1], [1, 0.2]]
+
+[[layer]]
+name = "lattice"
+kind = "bspline-ffd"
+around = true
+shape = [3, 3, 4]
+moves = [{ at = [2, "*", 3], by = ["10 %", 0, "5 %"] }]
+
+[[key]]
+layer = "turn"
+time = 0
+angle = 0
+
+[[key]]
+layer = "turn"
+time = 2
+angle = 180
+easing = "ease_in_out"
+"""

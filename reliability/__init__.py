@@ -1,0 +1,1 @@
+"""What pliant withstands: programs that run once, go on where they were cut off, and report figures."""
