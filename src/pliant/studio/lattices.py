@@ -7,7 +7,8 @@ from numpy.typing import NDArray
 
 from pliant.deformer import Deformer
 from pliant.errors import PliantError
-from pliant.mesh import Points, PolygonMesh
+from pliant.mesh import Points
+from pliant.space.extended_ffd import ExtendedFFD
 
 
 def lattice_shape(deformer: Deformer) -> list[int] | None:
@@ -23,14 +24,30 @@ def links(deformer: Deformer) -> NDArray[np.uint32]:
     """(e, 2) control points that are joined by a line: neighbours in a lattice, edges of a cage."""
     shape = lattice_shape(deformer)
     if shape is None:
-        mesh = getattr(deformer, "mesh", None)
-        return mesh.edges.astype(np.uint32) if isinstance(mesh, PolygonMesh) else np.empty((0, 2), np.uint32)
+        return np.asarray(getattr(deformer, "links", np.empty((0, 2))), np.uint32)
     index = np.arange(int(np.prod(shape)), dtype=np.uint32).reshape(shape)
     found = []
     for axis in range(3):
         first, second = np.delete(index, -1, axis), np.delete(index, 0, axis)
         found.append(np.stack([first.reshape(-1), second.reshape(-1)], axis=1))
     return np.concatenate(found)
+
+
+def places_around(deformer: Deformer) -> NDArray[np.int32] | None:
+    """(m, 3) places around, outwards and along of a round lattice; -1 where a control point stands at several.
+
+    None for what is no lattice of one block.
+    """
+    if not isinstance(deformer, ExtendedFFD) or len(deformer.blocks) != 1:
+        return None
+    index = deformer.blocks[0].index
+    found = np.full((len(deformer.points), 3), -1, np.int32)
+    for axis, at in enumerate(np.indices(index.shape)):
+        least, most = np.full(len(found), index.size), np.full(len(found), -1)
+        np.minimum.at(least, index.reshape(-1), at.reshape(-1))
+        np.maximum.at(most, index.reshape(-1), at.reshape(-1))
+        found[:, axis] = np.where(least == most, most, -1)
+    return found
 
 
 def axes_of(deformer: Deformer) -> Points:

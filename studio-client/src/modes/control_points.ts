@@ -5,6 +5,8 @@ import type { Frame } from "../transport/frame";
 
 export type Shape = [number, number, number];
 
+const TWIN = 0.02; // of the extent: how far a twin may be from the mirror image
+
 export class ControlPoints {
   readonly rest: Float64Array;
   readonly now: Float64Array;
@@ -14,12 +16,17 @@ export class ControlPoints {
   locked: Set<number>;
   /** The one that was chosen last. */
   last: number | null = null;
+  /** (m, 3) places around, outwards and along of a round lattice; -1 where a point stands at several. */
+  private readonly places: Int32Array | null;
 
   constructor(
     readonly layer: string,
     readonly shape: Shape | null,
     answer: Frame,
+    /** Through which points without a lattice are mirrored. */
+    private readonly middle = new Vector3(),
   ) {
+    this.places = (answer.arrays["places"] as Int32Array | undefined) ?? null;
     this.rest = answer.arrays["rest"] as Float64Array;
     this.now = answer.arrays["points"] as Float64Array;
     this.links = answer.arrays["links"] as Uint32Array;
@@ -40,8 +47,19 @@ export class ControlPoints {
     return this.at(index).sub(new Vector3().fromArray(this.rest, 3 * index));
   }
 
+  /** Whether the control points stand in a lattice: of a box, or around an axis. */
+  get arranged(): boolean {
+    return this.shape !== null || this.places !== null;
+  }
+
+  /** Whether the lattice goes around an axis. */
+  get round(): boolean {
+    return this.places !== null;
+  }
+
   /** (i, j, k) of a control point of a lattice. */
   place(index: number): Shape | null {
+    if (this.places) return [...this.places.subarray(3 * index, 3 * index + 3)] as Shape;
     if (!this.shape) return null;
     const [, y, z] = this.shape;
     return [Math.floor(index / (y * z)), Math.floor(index / z) % y, index % z];
@@ -52,19 +70,31 @@ export class ControlPoints {
     return (i * y + j) * z + k;
   }
 
+  /** How many layers there are along an axis. */
+  layers(axis: 0 | 1 | 2): number {
+    if (this.shape) return this.shape[axis];
+    return this.places ? 1 + this.places.reduce((most, value, i) => (i % 3 === axis ? Math.max(most, value) : most), 0) : 0;
+  }
+
   /** A whole layer of the lattice: all that share the index along an axis. */
   layerOf(index: number, axis: 0 | 1 | 2): number[] {
     const place = this.place(index);
-    if (!place) return [index];
+    if (!place || place[axis] < 0) return [index];
     return this.where((other) => other[axis] === place[axis]);
   }
 
-  /** The control point on the other side of the lattice; null where there is no lattice. */
-  mirrored(index: number, axis: 0 | 1 | 2): number | null {
+  /** All that differ from a control point along one axis only: a ring where that goes around. */
+  rowOf(index: number, axis: 0 | 1 | 2): number[] {
     const place = this.place(index);
-    if (!place) return null;
-    const other: Shape = [...place];
-    other[axis] = this.shape![axis] - 1 - place[axis];
+    if (!place || place[axis] < 0) return [index];
+    return this.where((other) => other.every((value, k) => k === axis || value === place[k]));
+  }
+
+  /** The control point on the other side of the lattice, or of the middle; null where there is none. */
+  mirrored(index: number, axis: 0 | 1 | 2): number | null {
+    if (!this.shape) return this.twin(index, axis);
+    const other: Shape = [...this.place(index)!];
+    other[axis] = this.shape[axis] - 1 - other[axis];
     return this.index(other);
   }
 
@@ -99,6 +129,20 @@ export class ControlPoints {
     return box;
   }
 
+  private twin(index: number, axis: 0 | 1 | 2): number | null {
+    const goal = new Vector3().fromArray(this.rest, 3 * index);
+    goal.setComponent(axis, 2 * this.middle.getComponent(axis) - goal.getComponent(axis));
+    const extent = new Box3().setFromArray(this.rest).getSize(new Vector3()).length();
+    let best: number | null = null;
+    let least = TWIN * extent;
+    const at = new Vector3();
+    for (let i = 0; i < this.count; i++) {
+      const away = at.fromArray(this.rest, 3 * i).distanceTo(goal);
+      if (away < least) [best, least] = [i, away];
+    }
+    return best;
+  }
+
   private where(wanted: (place: Shape) => boolean): number[] {
     return [...Array(this.count).keys()].filter((index) => wanted(this.place(index)!));
   }
@@ -126,7 +170,7 @@ export class PointMotion {
     this.start = points.now.slice();
     for (const index of points.selected) if (!points.locked.has(index)) this.weights.set(index, 1);
     if (softRadius) this.addSoft(softRadius);
-    if (mirrorAxis !== null && points.shape) this.addMirrors(mirrorAxis);
+    if (mirrorAxis !== null) this.addMirrors(mirrorAxis);
     this.indices = Uint32Array.from(new Set([...this.weights.keys(), ...this.mirrors.map(([, to]) => to)]));
   }
 
@@ -183,8 +227,8 @@ export class PointMotion {
 
   private addMirrors(axis: 0 | 1 | 2): void {
     for (const index of [...this.weights.keys()]) {
-      const other = this.points.mirrored(index, axis)!;
-      if ((other === index || !this.weights.has(other)) && !this.points.locked.has(other)) this.mirrors.push([index, other]);
+      const other = this.points.mirrored(index, axis);
+      if (other !== null && (other === index || !this.weights.has(other)) && !this.points.locked.has(other)) this.mirrors.push([index, other]);
     }
   }
 }

@@ -2,7 +2,10 @@
 
 import { Plane, Vector3 } from "three";
 import type { TourStep } from "../panels/tour";
+import type { IconName } from "../core/icons";
+import type { StringKey } from "../core/strings";
 import type { Studio } from "../studio";
+import type { Layer } from "../transport/protocol";
 import { Gizmo } from "../view/gizmo";
 import { Handles } from "../view/handles";
 import { h } from "../core/dom";
@@ -10,7 +13,7 @@ import { ControlPoints, PointMotion } from "./control_points";
 import { LayerDrag } from "./layer_drag";
 import { registerMode, type Mode, type Pointer } from "./mode";
 import { PointsPanel } from "./points_panel";
-import { PointTools, type Axis } from "./points_tools";
+import { PointTools, type Axis, type Take } from "./points_tools";
 
 const SLOP = 3; // pixels that a click may wander
 
@@ -22,14 +25,14 @@ interface Grab {
 }
 
 export class PointsMode implements Mode {
-  readonly id = "points";
-  readonly icon = "points";
-  readonly title = "modePoints";
-  readonly hint = "hintPoints";
-  readonly shortcut = "2";
+  readonly id: string = "points";
+  readonly icon: IconName = "points";
+  readonly title: StringKey = "modePoints";
+  readonly hint: StringKey = "hintPoints";
+  readonly shortcut: string = "2";
   points: ControlPoints | null = null;
   readonly tools: PointTools;
-  private handles: Handles | null = null;
+  protected handles: Handles | null = null;
   private gizmo: Gizmo | null = null;
   private readonly side: PointsPanel;
   private readonly frame = h("div", { class: "selection-frame", hidden: true });
@@ -41,7 +44,7 @@ export class PointsMode implements Mode {
   private stops: (() => void)[] = [];
   private asked = 0;
 
-  constructor(private readonly studio: Studio) {
+  constructor(protected readonly studio: Studio) {
     this.tools = new PointTools(studio);
     this.side = new PointsPanel({
       place: (position) => void this.placeLast(position),
@@ -82,8 +85,13 @@ export class PointsMode implements Mode {
     return this.tools.bar();
   }
 
-  panel(): { title: "selection"; body: HTMLElement } {
+  panel(): { title: StringKey; body: HTMLElement } {
     return { title: "selection", body: this.side.element };
+  }
+
+  /** The selected control points in numbers. */
+  protected get numbers(): HTMLElement {
+    return this.side.element;
   }
 
   tour(): TourStep[] {
@@ -104,15 +112,16 @@ export class PointsMode implements Mode {
     if (this.gizmo?.hot) return false;
     const { points, handles } = this;
     if (!points || !handles) return false;
-    const found = handles.pick(pointer.x, pointer.y, pointer.touch ? 26 : undefined);
-    if (found === null) {
+    const group = this.find(pointer);
+    const found = group?.[0];
+    if (!group || found === undefined) {
       if (!this.tools.now.rectangle && !pointer.shift) return false;
       this.corner = pointer;
       return true;
     }
-    if (pointer.alt) points.choose(points.layerOf(found, this.facingAxis()), pointer.shift ? "add" : "only");
-    else if (pointer.shift) points.choose([found], "toggle");
-    else if (!points.selected.has(found)) points.choose([found], "only");
+    if (pointer.alt) points.choose(this.wholeLayer(found), pointer.shift ? "add" : "only");
+    else if (pointer.shift) points.choose(group, group.length > 1 ? "add" : "toggle");
+    else if (!group.every((index) => points.selected.has(index))) points.choose(group, "only");
     else points.last = found;
     this.look();
     const at = points.at(found);
@@ -140,7 +149,7 @@ export class PointsMode implements Mode {
   }
 
   hover(pointer: Pointer): void {
-    const found = this.handles?.pick(pointer.x, pointer.y) ?? null;
+    const found = this.find(pointer)?.[0] ?? null;
     if (found === this.hovered) return;
     this.hovered = found;
     this.studio.viewport.canvas.style.cursor = found === null ? "" : "grab";
@@ -157,8 +166,8 @@ export class PointsMode implements Mode {
       o: () => this.tools.change({ soft: !this.tools.now.soft }),
       n: () => this.tools.change({ snap: !this.tools.now.snap }),
       a: () => this.chooseAll(),
-      delete: () => void this.reset(false),
-      backspace: () => void this.reset(false),
+      delete: () => void this.remove(),
+      backspace: () => void this.remove(),
       escape: () => this.escape(),
     };
     if (axis >= 0) this.tools.change({ axis: this.tools.now.axis === axis ? null : (axis as Axis) });
@@ -192,11 +201,52 @@ export class PointsMode implements Mode {
 
   chooseLayer(axis: Axis, index: number): void {
     const { points } = this;
-    if (!points?.shape) return;
-    const place: [number, number, number] = [0, 0, 0];
-    place[axis] = Math.min(Math.max(index, 0), points.shape[axis] - 1);
-    points.choose(points.layerOf(points.index(place), axis), "only");
+    if (!points?.arranged) return;
+    const wanted = Math.min(Math.max(index, 0), points.layers(axis) - 1);
+    const first = [...Array(points.count).keys()].find((each) => points.place(each)![axis] === wanted);
+    if (first !== undefined) points.choose(points.layerOf(first, axis), "only");
     this.look();
+  }
+
+  /** What a click takes: the control points of the thing that is there, the nearest first. */
+  protected find(pointer: Pointer): number[] | null {
+    const found = this.handles?.pick(pointer.x, pointer.y, pointer.touch ? 26 : undefined) ?? null;
+    return found === null || !this.points ? null : [found, ...this.taken(found).filter((each) => each !== found)];
+  }
+
+  /** What there is to take in these control points. */
+  protected takes(points: ControlPoints): readonly Take[] {
+    if (points.round) return ["point", "ring", "row", "layer"];
+    return points.shape ? ["point", "layer"] : ["point"];
+  }
+
+  /** What the key for deleting does. */
+  protected remove(): Promise<void> {
+    return this.reset(false);
+  }
+
+  /** Whether the mode is for a layer. */
+  protected accepts(layer: Layer): boolean {
+    return layer.points > 0;
+  }
+
+  /** The selection, or what is loaded, is another. */
+  protected selectionChanged(): void {
+    this.side.show(this.points);
+  }
+
+  private taken(index: number): number[] {
+    const points = this.points!;
+    const { take } = this.tools.now;
+    if (take === "ring") return points.rowOf(index, 0);
+    if (take === "row") return points.rowOf(index, 1);
+    return take === "layer" ? this.wholeLayer(index) : [index];
+  }
+
+  /** A layer across the axis of a round lattice; of a box, the one that faces the eye. */
+  private wholeLayer(index: number): number[] {
+    const points = this.points!;
+    return points.layerOf(index, points.round ? 2 : this.facingAxis());
   }
 
   private chooseAll(): void {
@@ -219,10 +269,10 @@ export class PointsMode implements Mode {
   }
 
   /** Fetch the control points of the active layer. */
-  private async load(): Promise<void> {
+  protected async load(): Promise<void> {
     const { layer } = this.studio;
     const ticket = ++this.asked;
-    if (!layer || !layer.points) {
+    if (!layer || !this.accepts(layer)) {
       this.points = null;
       this.handles?.load(new Float64Array(), new Uint32Array());
       this.look();
@@ -232,9 +282,11 @@ export class PointsMode implements Mode {
     const answer = await this.studio.ask("points.get", { layer: layer.name });
     if (!answer || ticket !== this.asked || this.drag || !this.handles) return;
     const before = this.points;
-    this.points = new ControlPoints(layer.name, layer.shape, answer);
+    const middle = new Vector3(...(this.studio.scene!.mesh!.center as [number, number, number]));
+    this.points = new ControlPoints(layer.name, layer.shape, answer, middle);
     if (before) this.points.keepSelection(before);
     this.handles.load(this.points.now, this.points.links);
+    this.tools.offer(this.takes(this.points), this.points.shape !== null);
     this.look();
   }
 
@@ -271,7 +323,7 @@ export class PointsMode implements Mode {
     await this.studio.ask("points.set", { layer: points.layer }, { index: Uint32Array.of(points.last), positions: position });
   }
 
-  private async reset(all: boolean): Promise<void> {
+  protected async reset(all: boolean): Promise<void> {
     const { points } = this;
     if (!points || (!all && !points.selected.size)) return;
     const index = all ? {} : { index: Uint32Array.from(points.selected) };
@@ -343,7 +395,7 @@ export class PointsMode implements Mode {
   }
 
   /** Colours, gizmo and panel follow what is selected. */
-  private look(): void {
+  protected look(): void {
     const { points, handles, motion } = this;
     const palette = this.studio.palette;
     handles?.setColors(
@@ -359,7 +411,7 @@ export class PointsMode implements Mode {
     );
     this.gizmo?.useCamera();
     this.gizmo?.place(this.pivot());
-    this.side.show(points);
+    this.selectionChanged();
     this.studio.viewport.request();
   }
 }

@@ -35,7 +35,7 @@ export class PointsPanel {
       this.element,
       h("p", { class: "selection-title" }, this.title(points)),
       count > 0 && this.fields(points),
-      points.shape && this.layerChoice(points),
+      points.arranged && this.layerChoice(points),
       h(
         "div",
         { class: "button-row" },
@@ -84,10 +84,11 @@ export class PointsPanel {
   }
 
   private layerChoice(points: ControlPoints): HTMLElement {
-    const place = points.last === null ? [0, 0, 0] : points.place(points.last)!;
+    const place = points.last === null ? [0, 0, 0] : points.place(points.last)!.map((index) => Math.max(index, 0));
+    const letters = points.round ? [t("around_axis"), t("outwards"), t("along_axis")] : LETTERS;
     return row(
       t("layerOf"),
-      ...LETTERS.map((letter, axis) =>
+      ...letters.map((letter, axis) =>
         h(
           "span",
           { class: "layer-choice" },

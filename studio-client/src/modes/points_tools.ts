@@ -3,13 +3,15 @@
 import { Vector3 } from "three";
 import { h, replace } from "../core/dom";
 import { Signal } from "../core/signal";
-import { t } from "../core/strings";
+import { t, tWord } from "../core/strings";
 import type { Studio } from "../studio";
 import { iconButton, numberField, press, select, slider, toggle } from "../panels/controls";
 import type { Tool } from "../view/gizmo";
 import { roundStep } from "../view/ground";
 
 export type Axis = 0 | 1 | 2;
+/** What a click takes: one control point, or all of a ring, a row, a layer; an edge or a face of a cage. */
+export type Take = "point" | "ring" | "row" | "layer" | "edge" | "face";
 export type Pivot = "center" | "origin" | "last";
 
 export interface Tools {
@@ -23,6 +25,11 @@ export interface Tools {
   step: number;
   pivot: Pivot;
   axis: Axis | null;
+  take: Take;
+  /** What there is to take. */
+  takes: readonly Take[];
+  /** What the axes of the lattice are called. */
+  letters: readonly [string, string, string];
 }
 
 export class PointTools {
@@ -36,6 +43,9 @@ export class PointTools {
     step: 0,
     pivot: "center",
     axis: null,
+    take: "point",
+    takes: ["point"],
+    letters: ["i", "j", "k"],
   });
 
   constructor(private readonly studio: Studio) {}
@@ -68,6 +78,13 @@ export class PointTools {
     return new Vector3(...kept.toArray().map((value) => Math.round(value / this.step) * this.step));
   }
 
+  /** What these control points let one take, and what their axes are called. */
+  offer(takes: readonly Take[], boxed: boolean): void {
+    const letters = boxed ? (["i", "j", "k"] as const) : (["x", "y", "z"] as const);
+    if (String(takes) === String(this.now.takes) && letters[0] === this.now.letters[0]) return;
+    this.change({ takes, letters, take: takes.includes(this.now.take) ? this.now.take : "point" });
+  }
+
   /** The bar above the canvas. */
   bar(): HTMLElement {
     const element = h("div", { class: "toolbar", role: "toolbar" });
@@ -88,6 +105,7 @@ export class PointTools {
       tool("rotate", "rotate", `${t("toolRotate")} (R)`),
       tool("scale", "scale", `${t("toolScale")} (S)`),
       separator(),
+      now.takes.length > 1 && this.takeChoice(),
       toggle("rectangle", `${t("toolRectangle")} (B)`, now.rectangle, (rectangle) => this.change({ rectangle })),
       separator(),
       toggle("soft", `${t("soft")} (O)`, now.soft, (soft) => this.change({ soft })),
@@ -114,9 +132,15 @@ export class PointTools {
   }
 
   private mirrorChoice(): HTMLElement {
-    const choices = [["", t("mirrorOff")], ["0", "i"], ["1", "j"], ["2", "k"]] as const;
+    const [first, second, third] = this.now.letters;
+    const choices = [["", t("mirrorOff")], ["0", first], ["1", second], ["2", third]] as const;
     const now = this.now.mirror === null ? "" : (String(this.now.mirror) as "0" | "1" | "2");
     return select(choices, now, (value) => this.change({ mirror: value === "" ? null : (Number(value) as Axis) }), t("mirror"));
+  }
+
+  private takeChoice(): HTMLElement {
+    const choices = this.now.takes.map((each) => [each, tWord("take_", each)] as const);
+    return select(choices, this.now.take, (take) => this.change({ take }), t("take"));
   }
 
   private pivotChoice(): HTMLElement {

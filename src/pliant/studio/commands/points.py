@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 
 from pliant.deformer import Controls, Deformer
 from pliant.errors import InvalidParameter
+from pliant.rendering.palette import SEQUENTIAL, color_table
 from pliant.studio.frames import Frame
-from pliant.studio.lattices import axes_of, links
+from pliant.studio.lattices import axes_of, links, places_around
 from pliant.studio.request import Request, command
 from pliant.studio.session import Session
 
@@ -27,7 +28,22 @@ def get(session: Session, request: Request) -> Frame:
         "axes": axes_of(deformer).reshape(-1),
         "locked": session.locked_points(name),
     }
+    around = places_around(deformer)
+    if around is not None:
+        arrays["places"] = around.reshape(-1)
     return Frame({}, arrays)
+
+
+@command("points.influence")
+def influence(session: Session, request: Request) -> Frame:
+    """How much of the control points' common move each point of the shape makes, from 0 to 1."""
+    name = request.text("layer")
+    deformer = _by_points(session, name)
+    step = np.zeros(deformer.rest.shape)
+    step.reshape(-1, 3)[request.indices("index", step.size // 3), 0] = 1.0
+    share = session.shown.binding.bound(name).jvp(None, step)[:, 0]
+    table = np.rint(255 * color_table(SEQUENTIAL)).astype(np.uint8)
+    return Frame({}, {"values": share.astype(np.float32), "table": table})
 
 
 @command("points.set")

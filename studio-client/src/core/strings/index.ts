@@ -4,10 +4,12 @@
 import type { Language } from "../settings";
 import { AXIAL } from "./axial";
 import { COMMON } from "./common";
+import { MODEL } from "./model";
+import { POINTS } from "./points";
 import type { Strings } from "./strings";
 import { TOUR } from "./tour";
 
-const TABLE = { ...COMMON, ...AXIAL, ...TOUR } as const satisfies Strings;
+const TABLE = { ...COMMON, ...MODEL, ...AXIAL, ...POINTS, ...TOUR } as const satisfies Strings;
 
 export type StringKey = keyof typeof TABLE;
 
