@@ -44,6 +44,7 @@ export function mount(root: HTMLElement, transport: Transport, { antialias = tru
   const studio = new Studio(transport, { antialias, root });
   const progress = new Progress(studio.session);
   const opening = new Opening(studio, progress);
+  studio.take = (files) => void opening.take(files);
   const compare = new Compare(studio);
   const modes = makeModes(studio);
   const field = new FieldPanel(studio);

@@ -46,6 +46,8 @@ export class Studio {
   /** What a mode paints the surface with, in place of the field's colours. */
   readonly paint = new Signal<Paint | null>(null);
   readonly root: HTMLElement;
+  /** Open files that were chosen, as if they had been dropped; set by the page. */
+  take: (files: File[]) => void = () => undefined;
 
   constructor(transport: Transport, options: StudioOptions) {
     this.root = options.root;

@@ -4,3 +4,5 @@ import "./look";
 import "./points";
 import "./pull";
 import "./axial";
+import "./sites";
+import "./model";

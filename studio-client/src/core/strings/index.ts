@@ -5,11 +5,13 @@ import type { Language } from "../settings";
 import { AXIAL } from "./axial";
 import { COMMON } from "./common";
 import { MODEL } from "./model";
+import { EXTENDED } from "./extended";
 import { POINTS } from "./points";
+import { SITES } from "./sites";
 import type { Strings } from "./strings";
 import { TOUR } from "./tour";
 
-const TABLE = { ...COMMON, ...MODEL, ...AXIAL, ...POINTS, ...TOUR } as const satisfies Strings;
+const TABLE = { ...COMMON, ...MODEL, ...AXIAL, ...EXTENDED, ...POINTS, ...SITES, ...TOUR } as const satisfies Strings;
 
 export type StringKey = keyof typeof TABLE;
 
