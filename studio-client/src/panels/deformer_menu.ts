@@ -5,6 +5,7 @@ import { icon } from "../core/icons";
 import { t, type StringKey } from "../core/strings";
 import type { Studio } from "../studio";
 import type { Kind } from "../transport/protocol";
+import { newExtended } from "./extended_dialog";
 import { newLattice } from "./lattice_dialog";
 
 const GROUPS: Record<string, StringKey> = { lattice: "groupLattices", shape: "groupShapes", field: "groupFields" };
@@ -49,7 +50,8 @@ function inGroup(studio: Studio, kinds: Kind[], group: string, title: string, cl
 function item(studio: Studio, kind: Kind, close: () => void): HTMLElement {
   const choose = (): void => {
     close();
-    if (LATTICES.includes(kind.name)) newLattice(studio, kind.name === "bspline-ffd" ? "bspline" : "bezier");
+    if (kind.name === "extended-ffd") newExtended(studio);
+    else if (LATTICES.includes(kind.name)) newLattice(studio, kind.name === "bspline-ffd" ? "bspline" : "bezier");
     else void studio.ask("layers.add", { kind: kind.name }).then((answer) => {
       if (answer) studio.activeLayer.set(answer.head["layer"] as string);
     });
