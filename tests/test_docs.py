@@ -1,4 +1,4 @@
-"""The tutorial does what it says: its code runs as it stands, in the order in which it stands."""
+"""The tutorials do what they say: their code runs as it stands, in the order in which it stands."""
 
 from __future__ import annotations
 
@@ -55,3 +55,56 @@ def test_the_first_page_moves_a_control_point(folder):
     exec(compile(blocks("index.md", "python")[0], "index.md", "exec"), names)
     moved = np.linalg.norm(pl.read("bent.obj").points - names["mesh"].points, axis=1)
     assert 0 < moved.max() < 0.2 * names["mesh"].diagonal  # a control point attracts, and does not reach
+
+
+def run(page: str) -> dict:
+    """Runs a page from top to bottom, Python and commands; gives the names it leaves."""
+    names: dict = {"__name__": "__main__"}
+    text = (DOCS / page).read_text(encoding="utf-8")
+    for language, code in re.findall(r"```(python|bash)\n(.*?)```", text, flags=re.S):
+        if language == "python":
+            exec(compile(code, page, "exec"), names)
+            continue
+        for line in code.splitlines():
+            done = CliRunner().invoke(app, shlex.split(line)[1:])
+            assert done.exit_code == 0, (line, done.output)
+    return names
+
+
+def test_the_student_sees_that_splines_are_local(folder):
+    names = run("tutorials/graphics-student.md")
+    assert names["reached"]["spline"] < names["reached"]["bezier"] / 2
+    assert pl.certify(names["folding"]).status == "folds"
+    assert pl.certify(names["safe"]).lower > 0
+
+
+def test_the_engineer_gets_less_skin_around_the_same_volume(folder):
+    names = run("tutorials/shape-optimisation.md")
+    assert names["found"].fun < 0.96 * pl.area(names["pod"])
+    assert pl.volume(names["best"](names["pod"])) == pytest.approx(names["whole"], rel=1e-5)
+    again = pl.read_transform(folder / "best.FFD")
+    np.testing.assert_allclose(again(names["pod"].points), names["best"](names["pod"].points), atol=1e-5)
+
+
+def test_the_researcher_finds_the_patient_again(folder):
+    names = run("tutorials/medical-imaging.md")
+    assert names["fitted"].distance < min(0.5, names["before"].distance)  # mm
+    moved = pl.read(folder / "moved" / "organ.ply")
+    np.testing.assert_allclose(names["transform"](moved.points), names["organ"].points, atol=1e-6)
+    np.testing.assert_allclose(pl.read(folder / "organ-in-target.ply").points, moved.points, atol=1e-6)
+
+
+def test_the_animator_exports_what_was_keyed(folder):
+    names = run("tutorials/animator.md")
+    motion, wild = names["motion"], names["wild"]
+    np.testing.assert_allclose(motion.points[7], wild.sample(7 / 24).points, atol=1e-4 * names["body"].diagonal)
+    assert {"jelly.glb", "bounce.glb", "jump.glb", "jump.pliant"} <= {path.name for path in folder.iterdir()}
+
+
+@pytest.mark.parametrize("marker", ["demo", "test"])
+def test_both_readmes_give_the_same_commands(marker):
+    english, chinese = (
+        re.search(rf"<!-- {marker} -->\n```sh\n(.*?)```", (DOCS.parent / name).read_text(encoding="utf-8"), re.S)[1]
+        for name in ("README.md", "README.zh.md")
+    )
+    assert english == chinese
