@@ -149,6 +149,22 @@ def test_a_fit_that_moves_leaves_its_pose_in_a_layer(opened, tmp_path):
     np.testing.assert_allclose(session.scene.deformed().points, expected.points, atol=1e-9)
 
 
+def test_landmarks_are_seen_and_dragged_through_the_layers_above(opened):
+    session, page = opened
+    bend = pl.Twist.around(session.scene.mesh, axis="z", angle=0.6)
+    stack = session.scene.stack.append(Layer("twist", bend))
+    session.submit(session.commit, session.scene.replace(stack=stack), "add").result()
+    page.ask(session, "model.landmark", {**LAYER, "vertex": 8})
+    seen = page.ask(session, "model.get", LAYER).arrays["positions"]
+    np.testing.assert_allclose(seen, session.scene.deformed().points[8], atol=1e-9)
+    goal = seen + [0.0, 0.05, 0.1]
+    page.ask(session, "model.begin", LAYER)
+    page.ask(session, "model.move", index=np.array([0], np.uint32), positions=goal)
+    page.ask(session, "model.commit")
+    np.testing.assert_allclose(session.scene.deformed().points[8], goal, atol=2e-3)  # but for the noise
+    np.testing.assert_allclose(page.ask(session, "model.get", LAYER).arrays["positions"], goal, atol=1e-6)
+
+
 def test_a_fit_that_is_stopped_leaves_the_shape_as_it_was(opened, tmp_path):
     session, page = opened
     target = shape_of(session).model.mesh(np.ones(45))

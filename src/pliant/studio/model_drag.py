@@ -13,7 +13,7 @@ from pliant.scene.stack import Stack
 from pliant.studio.dragging import Dragging
 from pliant.studio.request import Client, Request
 from pliant.studio.session import Session
-from pliant.studio.shape_models import model_layer
+from pliant.studio.shape_models import layers_above, model_layer
 
 
 class ModelDrag(Dragging):
@@ -36,7 +36,8 @@ class ModelDrag(Dragging):
             index, positions = request.indices("index", self._landmarks), request.points("positions")
             if len(index) != len(positions):
                 raise InvalidParameter(f"{len(index)} landmarks have {len(positions)} positions")
-            self._controls[self._count :].reshape(-1, 3)[index] = positions
+            below = layers_above(self._drag.stack, self.layer).inverse(positions)
+            self._controls[self._count :].reshape(-1, 3)[index] = below
         return self._drag.update(self._controls), self._drag.points, {}
 
     @property

@@ -7,6 +7,7 @@ from typing import Literal
 
 import numpy as np
 
+from pliant.deformer import SpaceDeformer
 from pliant.errors import InvalidParameter
 from pliant.mesh import PolygonMesh
 from pliant.scene.layer import Layer
@@ -17,6 +18,7 @@ from pliant.shape.conditioned_model import ConditionedModel
 from pliant.shape.kernel_text import parse_kernel
 from pliant.shape.model import ShapeModel
 from pliant.space.affine import Affine
+from pliant.studio.spaces import space_map
 
 NAME, POSE = "Shape model", "Pose"
 MOST_NUMBERS = 64_000_000  # of the fields of a model that is built here: half a gigabyte
@@ -35,6 +37,18 @@ def model_layer(stack: Stack, name: str) -> ConditionedModel:
     if not isinstance(deformer, ConditionedModel):
         raise InvalidParameter(f"layer {name!r} is no shape model: open one, or build one from a kernel")
     return deformer
+
+
+def layers_above(stack: Stack, name: str) -> SpaceDeformer:
+    """What the layers above a model do to space: from where it puts landmarks to where they are seen.
+
+    Raises
+    ------
+    NotDifferentiable
+        One of them edits the surface.
+    """
+    heard = stack.active
+    return space_map(Stack(tuple(layer for layer in stack.layers[stack.index(name) + 1 :] if layer in heard)))
 
 
 def model_scene(model: ShapeModel) -> Scene:

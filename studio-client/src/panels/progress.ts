@@ -39,8 +39,8 @@ export class Progress {
       "div",
       { class: "progress", role: "progressbar", "aria-label": title },
       h("span", { class: "progress-title" }, title),
-      h("div", { class: "progress-track" }, fill),
       onCancel && iconButton("close", t("cancel"), onCancel),
+      h("div", { class: "progress-track" }, fill),
     );
     const later = window.setTimeout(() => this.element.append(element), PATIENCE);
     return {

@@ -1,6 +1,6 @@
 // A second shape beside the one that is edited: translucent, never picked.
 
-import { BufferAttribute, BufferGeometry, Mesh, MeshPhongMaterial, Points, PointsMaterial, type Color } from "three";
+import { Box3, BufferAttribute, BufferGeometry, Mesh, MeshPhongMaterial, Points, PointsMaterial, type Color } from "three";
 import type { Frame } from "../transport/frame";
 import type { Viewport } from "./viewport";
 
@@ -20,6 +20,12 @@ export class GhostMesh {
 
   get visible(): boolean {
     return this.surface.visible || this.dots.visible;
+  }
+
+  /** Around what is shown; null where nothing is. */
+  get box(): Box3 | null {
+    const shown = [this.surface, this.dots].find((each) => each.visible);
+    return shown ? new Box3().setFromObject(shown) : null;
   }
 
   /** Show the mesh of an answer: its positions, normals and triangles; bare points where it has none. */

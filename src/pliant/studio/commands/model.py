@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import replace
 from typing import Any, Literal, cast, get_args
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pliant.errors import InvalidParameter
+from pliant.errors import InvalidParameter, NotDifferentiable
 from pliant.io import meshes
 from pliant.rendering.palette import SEQUENTIAL, color_table
 from pliant.shape.conditioned_model import ConditionedModel
@@ -24,7 +25,7 @@ from pliant.studio.model_drag import ModelDrag
 from pliant.studio.model_fit import Fitting, forget_target, keep_target, target_frame, target_of
 from pliant.studio.request import Request, command
 from pliant.studio.session import Session
-from pliant.studio.shape_models import NAME, built, model_layer
+from pliant.studio.shape_models import NAME, built, layers_above, model_layer
 
 _MOST_ARROWS = 600
 _MOST_ROUNDS = 500
@@ -51,13 +52,16 @@ def build(session: Session, request: Request) -> None:
 @command("model.get")
 def get(session: Session, request: Request) -> Frame:
     """What a page needs of a model to move it."""
-    shape = model_layer(session.required.stack, request.text("layer"))
-    model = shape.model
+    stack, name = session.required.stack, request.text("layer")
+    shape = model_layer(stack, name)
+    model, positions = shape.model, np.asarray(shape.positions)
+    with suppress(NotDifferentiable):  # where the surface is edited, they are shown where the model has them
+        positions = np.asarray(layers_above(stack, name)(positions))
     head = {"rank": model.rank, "count": model.count, "noise": shape.noise, "scalar": model.basis.scalar}
     arrays = {
         "coefficients": np.asarray(shape.coefficients),
         "vertices": np.asarray(shape.vertices, np.uint32),
-        "positions": np.asarray(shape.positions).reshape(-1),
+        "positions": positions.reshape(-1),
         "variances": model.variances / (model.variances.sum() or 1.0),
     }
     return Frame(head, arrays)

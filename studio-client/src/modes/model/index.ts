@@ -110,8 +110,9 @@ class ModelMode implements Mode {
     return { title: "modeModel", body: this.side.element };
   }
 
+  /** The shape and what it shall become. */
   selectionBox(): Box3 | null {
-    return null;
+    return this.target.box?.union(this.studio.mesh.box) ?? null;
   }
 
   down(pointer: Pointer): boolean {
@@ -305,7 +306,7 @@ class ModelMode implements Mode {
     const { palette } = this.studio;
     this.target.look();
     this.handles?.setColors(
-      (index) => (this.selected.has(index) ? palette.selected : index === this.hovered ? palette.hovered : palette.handle),
+      (index) => (this.selected.has(index) ? palette.selected : index === this.hovered ? palette.hovered : palette.grid),
       (index) => (index === this.hovered || this.selected.has(index) ? 1.35 : 1.1),
       palette.lattice,
     );

@@ -82,7 +82,7 @@ export class ModelPanel {
       "div",
       null,
       checkbox(t("showUncertainty"), uncertainty, actions.uncertainty),
-      row(t("landmarkNoise"), numberField(model.noise, setNoise, { label: t("landmarkNoise"), low: 1e-12, step: model.noise })),
+      row(t("landmarkNoise"), numberField(Number(model.noise.toPrecision(3)), setNoise, { label: t("landmarkNoise"), low: 1e-12, step: model.noise })),
       h(
         "div",
         { class: "button-row" },

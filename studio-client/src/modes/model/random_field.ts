@@ -11,9 +11,9 @@ import { buildModel, type KernelChoice } from "./build_dialog";
 export class RandomFieldPanel {
   readonly element = h("div", { class: "random-field" });
   /** As parts of the shape's diagonal. */
-  private sigma = 0.3;
+  private sigma = 0.2;
   private scale = 0.06;
-  private seed = 1;
+  private seed = 2;
   private on = false;
   private arrows: FieldView | null = null;
   private readonly latest = new Latest<null>(() => this.fetch());

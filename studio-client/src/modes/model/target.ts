@@ -1,5 +1,6 @@
 // The target of a fit: another mesh, translucent over the model, and how the model may move to it.
 
+import type { Box3 } from "three";
 import { pickFiles, upload } from "../../core/files";
 import { h, replace } from "../../core/dom";
 import { t } from "../../core/strings";
@@ -23,6 +24,10 @@ export class FitTarget {
 
   get shown(): boolean {
     return this.ghost?.visible ?? false;
+  }
+
+  get box(): Box3 | null {
+    return this.ghost?.box ?? null;
   }
 
   enter(): void {
@@ -64,7 +69,9 @@ export class FitTarget {
   async take(files: File[]): Promise<void> {
     if (!files.length) return;
     const name = await upload(this.studio, files, () => undefined);
-    if (name !== null) await this.ask({ upload: name });
+    if (name === null) return;
+    await this.ask({ upload: name });
+    if (this.box) this.studio.frame(this.box.union(this.studio.mesh.box));
   }
 
   private async ask(values: Record<string, unknown>): Promise<void> {
