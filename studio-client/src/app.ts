@@ -69,7 +69,7 @@ export function mount(root: HTMLElement, transport: Transport, { antialias = tru
         "div",
         { class: "workspace" },
         modeRail(studio, modes, setMode),
-        stage(studio, actions, compare, field, progress),
+        h("div", { class: "center" }, stage(studio, actions, compare, field, progress), dock(studio)),
         inspector(studio, field),
         startPage(studio, opening),
       ),
@@ -137,6 +137,14 @@ function stage(studio: Studio, actions: Actions, compare: Compare, field: FieldP
     hint,
     progress.element,
   );
+}
+
+function dock(studio: Studio): HTMLElement {
+  const element = h("div", { class: "dock-place" });
+  const show = (): void => replace(element, studio.mode.value?.dock?.() ?? studio.pinned.value);
+  studio.mode.watch(show);
+  studio.pinned.onChange(show);
+  return element;
 }
 
 function inspector(studio: Studio, field: FieldPanel): HTMLElement {

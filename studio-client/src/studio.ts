@@ -45,6 +45,8 @@ export class Studio {
   readonly pointsMoved = new Signal(0);
   /** What a mode paints the surface with, in place of the field's colours. */
   readonly paint = new Signal<Paint | null>(null);
+  /** What stays under the canvas in all modes. */
+  readonly pinned = new Signal<HTMLElement | null>(null);
   readonly root: HTMLElement;
   /** Open files that were chosen, as if they had been dropped; set by the page. */
   take: (files: File[]) => void = () => undefined;

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from pliant._version import __version__
+from pliant.scene import easing
 from pliant.scene.kinds import Kind, all_kinds
 from pliant.studio.files import CHUNK, MOST_BYTES
 from pliant.studio.quantities import QUANTITIES
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
     from pliant.studio.session import Session
 
 LATTICES = ("bspline-ffd", "bezier-ffd", "clamped-ffd", "bezier-patch-ffd", "extended-ffd")
+
+_HANDLES = {"linear": (1 / 3, 1 / 3, 2 / 3, 2 / 3), "smooth": (1 / 3, 0.0, 2 / 3, 1.0), **easing.CURVES}
 
 
 def catalogue(session: Session) -> dict[str, Any]:
@@ -38,6 +41,7 @@ def _lasting() -> dict[str, Any]:
         "transforms": [{"name": each.name, "suffixes": list(each.endings)} for each in transforms.FORMATS],
         "quantities": list(QUANTITIES),
         "examples": [{"name": name, "title": each.title, "points": each.points} for name, each in SAMPLES.items()],
+        "easings": [{"name": name, "handles": _HANDLES.get(name)} for name in easing.NAMES],
         "caps": {"upload": MOST_BYTES, "chunk": CHUNK},
     }
 

@@ -18,6 +18,8 @@ export interface Settings {
   /** Whether modes that are new to this person explain themselves, and which have. */
   guides: boolean;
   guided: string[];
+  /** How high the timeline is, in pixels. */
+  timeline: number;
 }
 
 const KEY = "pliant-studio";
@@ -33,6 +35,7 @@ const DEFAULTS: Settings = {
   up: "z",
   guides: true,
   guided: [],
+  timeline: 236,
 };
 
 export class SettingsStore {

@@ -3,6 +3,8 @@
 import "./look";
 import "./points";
 import "./pull";
+import "./surface";
 import "./axial";
 import "./sites";
 import "./model";
+import "./time";

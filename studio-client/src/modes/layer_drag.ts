@@ -1,6 +1,6 @@
 // A drag as the server sees it: begun, moved as often as it answers, committed as one entry of the history.
 
-import type { Numbers } from "../transport/frame";
+import type { Frame, Numbers } from "../transport/frame";
 import { Latest } from "../transport/latest";
 import type { Studio } from "../studio";
 
@@ -17,16 +17,20 @@ export class LayerDrag {
   private readonly latest: Latest<Job>;
   private index: Numbers | null = null;
   private ended = false;
+  /** What the server said to its beginning; null where it refused. */
+  readonly begun: Promise<Frame | null>;
 
   constructor(
     private readonly studio: Studio,
     /** Of the commands `begin`, `move`, `commit` and `cancel`. */
     private readonly prefix: string,
     begin: Record<string, unknown>,
-    private readonly onAnswer: (arrays: Record<string, Numbers>) => void = () => undefined,
+    private readonly onAnswer: (arrays: Record<string, Numbers>, head: Frame["head"]) => void = () => undefined,
+    arrays: Record<string, Numbers> = {},
   ) {
     this.latest = new Latest((job) => this.send(job));
-    void studio.ask(`${prefix}.begin`, begin).then((answer) => {
+    this.begun = studio.ask(`${prefix}.begin`, begin, arrays);
+    void this.begun.then((answer) => {
       if (!answer) this.ended = true;
     });
   }
@@ -65,7 +69,7 @@ export class LayerDrag {
       );
       this.studio.pointsMoved.set(this.studio.pointsMoved.value + 1);
     }
-    this.onAnswer(arrays);
+    this.onAnswer(arrays, head);
     const stop = this.studio.viewport.drawn.onChange(() => {
       stop();
       latencies.push(performance.now() - job.began);

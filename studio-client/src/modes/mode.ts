@@ -34,6 +34,8 @@ export interface Mode {
   key?(event: KeyboardEvent): boolean;
   /** What stands above the canvas while the mode is on. */
   toolbar?(): HTMLElement;
+  /** What stands under the canvas while the mode is on. */
+  dock?(): HTMLElement;
   /** A section of the inspector. */
   panel?(): { title: StringKey; body: HTMLElement };
   /** The steps of its first-run guide. */

@@ -71,12 +71,51 @@ export interface MeshFacts {
   parts: string[];
 }
 
+export interface ClipKey {
+  time: number;
+  /** A number a component; of what has more than three, how far it has come. */
+  value: number[];
+  easing: string | [number, number, number, number];
+}
+
+export interface TrackState {
+  layer: string;
+  field: string;
+  /** Whether the values themselves are told, and can be set. */
+  plain: boolean;
+  keys: ClipKey[];
+  /** The curves between the keys, one a component: their heights at these times. */
+  times: number[];
+  curves: number[][];
+}
+
+export interface ClipState {
+  /** Whether the scene has it, or it is what one would begin with. */
+  exists: boolean;
+  duration: number;
+  fps: number;
+  ending: "once" | "loop" | "ping-pong";
+  intensity: number;
+  amplify: number;
+  motion: boolean;
+  period: number;
+  /** Where the playhead is. */
+  time: number;
+  recording: boolean;
+  tracks: TrackState[];
+  /** What can have keys, by layer. */
+  keyable: Record<string, string[]>;
+}
+
 export interface SceneState {
   revision: number;
   name: string;
   dirty: boolean;
   mesh: MeshFacts | null;
   layers: Layer[];
+  clip: ClipState | null;
+  /** Vertices that have been given a name. */
+  selections?: { name: string; count: number }[];
   history: { labels: Label[]; position: number };
 }
 
@@ -104,6 +143,8 @@ export interface Catalogue {
   transforms: MeshFormat[];
   quantities: string[];
   examples: Example[];
+  /** Ways from key to key; those that are Bezier curves have handles. */
+  easings: { name: string; handles: [number, number, number, number] | null }[];
   recent: string[];
   recoverable: { name: string; when: string }[];
   caps: { upload: number; chunk: number };

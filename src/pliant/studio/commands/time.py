@@ -59,7 +59,9 @@ class KeyDrag(Dragging):
 
 @command("time.goto")
 def goto(session: Session, request: Request) -> None:
-    """The playhead to a time."""
+    """The playhead to a time; ``anew`` where the page shows a moment that is only near."""
+    if request.values.get("anew"):
+        session.shown.told[:] = np.nan
     session.go_to(_time(session, request))
 
 
@@ -69,8 +71,6 @@ def frame(session: Session, request: Request) -> Frame:
     stage, time = session.shown, _time(session, request)
     points = stage.at(time)
     moved = stage.drawn.moved(points, np.arange(len(points)))
-    if request.values.get("keep"):  # what the page shows is only near: to be told again, exactly
-        stage.told[:] = np.nan
     return Frame({"low": moved.low, "high": moved.high}, {"positions": moved.positions, "normals": moved.normals})
 
 

@@ -1,0 +1,103 @@
+// Time: keys, curves and the playhead under the canvas; ghosts of other moments; the tool's way over the object.
+
+import type { TourStep } from "../../panels/tour";
+import { openExport } from "../../panels/export_dialog";
+import type { Studio } from "../../studio";
+import { registerMode, type Mode, type Probe } from "../mode";
+import { ClipModel } from "./clip_model";
+import { Dock } from "./dock";
+import { KeyPanel } from "./key_panel";
+
+class TimeMode implements Mode {
+  readonly id = "time";
+  readonly icon = "time";
+  readonly title = "modeTime";
+  readonly hint = "hintTime";
+  readonly shortcut = "t";
+  private readonly model: ClipModel;
+  private readonly keys: KeyPanel;
+  private readonly timeline: Dock;
+
+  constructor(studio: Studio) {
+    this.model = new ClipModel(studio);
+    this.keys = new KeyPanel(this.model);
+    this.timeline = new Dock(this.model, {
+      templates: () => undefined,
+      film: () => openExport(studio),
+      pin: (on) => studio.pinned.set(on ? this.timeline.element : null),
+    });
+  }
+
+  enter(): void {
+    this.timeline.request();
+  }
+
+  leave(): void {
+    this.model.player.pause();
+  }
+
+  dock(): HTMLElement {
+    this.timeline.request();
+    return this.timeline.element;
+  }
+
+  panel(): { title: "timeSelectedKeys"; body: HTMLElement } {
+    return { title: "timeSelectedKeys", body: this.keys.element };
+  }
+
+  key(event: KeyboardEvent): boolean {
+    const { model } = this;
+    switch (event.key) {
+      case " ":
+        model.player.toggle();
+        return true;
+      case ",":
+        model.toKey(-1);
+        return true;
+      case ".":
+        model.toKey(1);
+        return true;
+      case "ArrowLeft":
+      case "ArrowRight":
+        void model.player.step(event.key === "ArrowLeft" ? -1 : 1);
+        return true;
+      case "Delete":
+      case "Backspace":
+        void model.removeSelected();
+        return true;
+      case "d":
+        void model.double();
+        return true;
+      case "k":
+        this.keys.setKeys();
+        return true;
+      case "Escape":
+        model.selection.choose([]);
+        return true;
+      default:
+        return false;
+    }
+  }
+
+  tour(): TourStep[] {
+    return [
+      { at: ".ruler", title: "tourTimeScrub", text: "tourTimeScrubText" },
+      { at: ".transport .record", title: "tourTimeRecord", text: "tourTimeRecordText" },
+      { at: ".time-area", title: "tourTimeKeys", text: "tourTimeKeysText" },
+      { at: ".transport .segments", title: "tourTimeCurves", text: "tourTimeCurvesText" },
+    ];
+  }
+
+  get probe(): Probe {
+    const { player, selection } = this.model;
+    return {
+      time: () => player.time.value,
+      playing: () => player.playing.value,
+      kept: () => player.kept.value,
+      selected: () => selection.list,
+      x: (time: number) => this.model.span.x(time),
+    } as Probe;
+  }
+}
+
+registerMode((studio) => new TimeMode(studio));

@@ -1,0 +1,176 @@
+// The playhead, and playing: by the clock, with the frames that the server has sent kept, so that a motion that was
+// played once plays without it. Where the server is slower than the clock, frames are left out; the pace is kept.
+
+import { Signal } from "../../core/signal";
+import { Latest } from "../../transport/latest";
+import type { Frame } from "../../transport/frame";
+import type { ClipState } from "../../transport/protocol";
+import type { Studio } from "../../studio";
+import { widened } from "../layer_drag";
+
+const ROOM = 256 * 2 ** 20; // bytes of frames that are kept
+
+export class Player {
+  /** In seconds, as this page shows it; the session's own follows where scrubbing and playing end. */
+  readonly time = new Signal(0);
+  readonly playing = new Signal(false);
+  /** Frames a second that were shown lately. */
+  readonly pace = new Signal(0);
+  /** How many frames are kept has changed. */
+  readonly kept = new Signal(0);
+  private readonly frames = new Map<number, Frame>();
+  private readonly latest = new Latest<number>((time) => this.fetch(time));
+  private bytes = 0;
+  private state = "";
+  private near = false; // what is shown is not what the session has told
+  private shown: number[] = [];
+
+  constructor(private readonly studio: Studio) {
+    studio.session.scene.onChange(() => this.follow());
+  }
+
+  get clip(): ClipState | null {
+    return this.studio.scene?.clip ?? null;
+  }
+
+  /** Whether a moment plays without the server. */
+  has(frame: number): boolean {
+    return this.frames.has(frame);
+  }
+
+  frameAt(time: number): number {
+    return Math.round(time * (this.clip?.fps ?? 24));
+  }
+
+  /** Show a moment while somebody scrubs; `settle` ends that. */
+  scrub(time: number): void {
+    this.pause(false);
+    this.show(time);
+  }
+
+  /** The session's playhead comes to where this page's is: exact points, panels and control points follow. */
+  async settle(): Promise<void> {
+    this.latest.clear();
+    await this.latest.idle();
+    const anew = this.near;
+    this.near = false;
+    await this.studio.ask("time.goto", { time: this.time.value, anew });
+  }
+
+  async goto(time: number): Promise<void> {
+    this.pause(false);
+    this.time.set(Math.min(Math.max(time, 0), this.clip?.duration ?? 0));
+    await this.settle();
+  }
+
+  step(by: number): Promise<void> {
+    const fps = this.clip?.fps ?? 24;
+    return this.goto((this.frameAt(this.time.value) + by) / fps);
+  }
+
+  toggle(): void {
+    if (this.playing.value) this.pause();
+    else this.play();
+  }
+
+  play(): void {
+    const { clip } = this;
+    if (!clip || this.playing.value) return;
+    const from = this.time.value >= clip.duration - 1e-9 ? 0 : this.time.value;
+    this.time.set(from);
+    this.playing.set(true);
+    this.studio.viewport.helpers.visible = false;
+    this.shown = [];
+    const began = performance.now() - 1000 * from;
+    const tick = (): void => {
+      if (!this.playing.value) return;
+      if (!this.tick((performance.now() - began) / 1000)) this.pause();
+      else requestAnimationFrame(tick);
+    };
+    requestAnimationFrame(tick);
+  }
+
+  /** Stop; `settled` unless what stops it goes on to another moment. */
+  pause(settled = true): void {
+    if (!this.playing.value) return;
+    this.playing.set(false);
+    this.pace.set(0);
+    this.studio.viewport.helpers.visible = true;
+    if (settled) void this.settle();
+  }
+
+  /** False where the clip has ended. */
+  private tick(elapsed: number): boolean {
+    const { clip } = this;
+    if (!clip) return false;
+    const ended = clip.ending === "once" && elapsed >= clip.duration;
+    const moment = folded(ended ? clip.duration : elapsed, clip);
+    const frame = Math.min(Math.floor(moment * clip.fps + 1e-6), Math.round(clip.duration * clip.fps));
+    if (frame !== this.shown.at(-1)) this.show(frame / clip.fps);
+    return !ended;
+  }
+
+  private show(time: number): void {
+    this.time.set(time);
+    this.near = true;
+    const known = this.frames.get(this.onFrame(time) ?? -1);
+    if (known) this.draw(known);
+    else this.latest.push(time);
+  }
+
+  private async fetch(time: number): Promise<void> {
+    const { state } = this;
+    const answer = await this.studio.ask("time.frame", { time });
+    if (!answer || state !== this.state) return;
+    this.keep(time, answer);
+    this.draw(answer);
+  }
+
+  private draw(frame: Frame): void {
+    const { head, arrays } = frame;
+    this.studio.mesh.move(null, widened(arrays["positions"]!, head["low"] as number[], head["high"] as number[]), arrays["normals"]!);
+    this.count();
+  }
+
+  private keep(time: number, frame: Frame): void {
+    const at = this.onFrame(time);
+    if (at === null || this.frames.has(at) || this.bytes > ROOM) return;
+    this.frames.set(at, frame);
+    for (const array of Object.values(frame.arrays)) this.bytes += array.byteLength;
+    this.kept.set(this.frames.size);
+  }
+
+  /** The frame that a time is, if it is one. */
+  private onFrame(time: number): number | null {
+    const { fps } = this.clip ?? { fps: 24 };
+    const frame = Math.round(time * fps);
+    return Math.abs(frame / fps - time) < 1e-6 ? frame : null;
+  }
+
+  private count(): void {
+    const now = performance.now();
+    this.shown = [...this.shown.filter((when) => now - when < 1000), now];
+    if (this.playing.value) this.pace.set(this.shown.length);
+  }
+
+  /** Another scene, or an edit: frames that were kept show the one before. */
+  private follow(): void {
+    const { scene } = this.studio;
+    const state = JSON.stringify([scene?.mesh?.id, scene?.revision]);
+    if (state !== this.state) {
+      this.state = state;
+      this.frames.clear();
+      this.bytes = 0;
+      this.kept.set(0);
+    }
+    if (!this.clip) this.pause(false);
+    if (!this.playing.value && !this.near) this.time.set(this.clip?.time ?? 0);
+  }
+}
+
+/** A time in the clip's own count: it ends, begins anew, or goes back. */
+function folded(time: number, clip: ClipState): number {
+  if (clip.ending === "once") return Math.min(time, clip.duration);
+  const moment = time % clip.period;
+  return moment > clip.duration ? clip.period - moment : moment;
+}
