@@ -38,6 +38,7 @@ def scene_state(session: Session) -> dict[str, Any]:
         "dirty": session.revision != session.saved,
         "mesh": _mesh(scene, session.stage.id, session.name),
         "layers": [_layer(layer) for layer in scene.stack],
+        "selections": [{"name": name, "count": len(np.asarray(ids))} for name, ids in scene.selections.items()],
         "clip": clip_state(scene, session.time, session.recording),
         "history": {
             "labels": [{"key": entry.key, "subject": entry.subject} for entry in history.entries],

@@ -4,6 +4,7 @@ import "./look";
 import "./points";
 import "./pull";
 import "./surface";
+import "./surface";
 import "./axial";
 import "./sites";
 import "./model";

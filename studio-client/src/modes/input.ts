@@ -1,10 +1,18 @@
 // Pointers on the canvas go to the mode first; what it leaves turns the view.
 
 import type { Studio } from "../studio";
-import type { Pointer } from "./mode";
+import type { Viewport } from "../view/viewport";
+import type { Mode, Pointer } from "./mode";
 
-export function listen(studio: Studio): void {
-  const { canvas, element, cameras } = studio.viewport;
+/** Who takes pointers. */
+export type Taker = Pick<Mode, "down" | "move" | "up" | "hover">;
+
+export const listen = (studio: Studio): void => void listenOn(studio.viewport, () => studio.mode.value);
+
+/** Listen to the pointers on a canvas; gives what ends it. */
+export function listenOn({ canvas, element, cameras }: Viewport, taker: () => Taker | null): () => void {
+  const end = new AbortController();
+  const { signal } = end;
   const sample = (event: PointerEvent): Pointer => {
     const box = canvas.getBoundingClientRect();
     return {
@@ -24,25 +32,27 @@ export function listen(studio: Studio): void {
       if (event.target !== canvas || event.button !== 0 || captured !== null) return;
       element.classList.add("by-pointer"); // no ring around the canvas for those who see where they click
       canvas.focus({ preventScroll: true });
-      if (!studio.mode.value?.down?.(sample(event))) return;
+      if (!taker()?.down?.(sample(event))) return;
       captured = event.pointerId;
       cameras.controls.enabled = false;
       canvas.setPointerCapture(event.pointerId);
     },
-    true,
+    { capture: true, signal },
   );
-  canvas.addEventListener("pointermove", (event) => {
-    if (event.pointerId === captured) studio.mode.value?.move?.(sample(event));
-    else if (event.buttons === 0) studio.mode.value?.hover?.(sample(event));
-  });
+  const move = (event: PointerEvent): void => {
+    if (event.pointerId === captured) taker()?.move?.(sample(event));
+    else if (event.buttons === 0) taker()?.hover?.(sample(event));
+  };
   const release = (event: PointerEvent): void => {
     if (event.pointerId !== captured) return;
     captured = null;
     cameras.controls.enabled = true;
-    studio.mode.value?.up?.(sample(event));
+    taker()?.up?.(sample(event));
   };
-  canvas.addEventListener("pointerup", release);
-  canvas.addEventListener("pointercancel", release);
-  canvas.addEventListener("blur", () => element.classList.remove("by-pointer"));
-  canvas.addEventListener("contextmenu", (event) => event.preventDefault());
+  canvas.addEventListener("pointermove", move, { signal });
+  canvas.addEventListener("pointerup", release, { signal });
+  canvas.addEventListener("pointercancel", release, { signal });
+  canvas.addEventListener("blur", () => element.classList.remove("by-pointer"), { signal });
+  canvas.addEventListener("contextmenu", (event) => event.preventDefault(), { signal });
+  return () => end.abort();
 }

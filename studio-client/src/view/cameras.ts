@@ -42,6 +42,17 @@ export class Cameras {
     return (2 * Math.tan((FIELD_OF_VIEW * Math.PI) / 360) * depth) / height;
   }
 
+  /** Look from where others look. */
+  copy(others: Cameras): void {
+    this.reach = others.reach;
+    this.target.copy(others.target);
+    this.active.up.copy(others.active.up);
+    this.active.position.copy(others.active.position);
+    this.active.zoom = others.active.zoom;
+    this.update();
+    this.controls.update();
+  }
+
   direction(): Vector3 {
     return this.active.getWorldDirection(new Vector3());
   }

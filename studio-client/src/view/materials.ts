@@ -2,6 +2,7 @@
 
 import { Color, DoubleSide, MeshPhongMaterial, RepeatWrapping, SRGBColorSpace, Texture } from "three";
 import type { Palette } from "./colors";
+import { MarkColors } from "./marks";
 import type { Settings } from "../core/settings";
 
 export interface MaterialFacts {
@@ -11,7 +12,8 @@ export interface MaterialFacts {
 }
 
 export class MaterialSet {
-  list: MeshPhongMaterial[] = [plain()];
+  private readonly marks = new MarkColors();
+  list: MeshPhongMaterial[] = [this.plain()];
   onChange: () => void = () => undefined;
   private facts: MaterialFacts[] = [];
   private readonly textures = new Map<number, Texture>();
@@ -23,7 +25,7 @@ export class MaterialSet {
     for (const texture of this.textures.values()) texture.dispose();
     this.textures.clear();
     this.facts = facts.map((each) => ({ ...each, texture: hasUVs ? each.texture : null }));
-    this.list = facts.length ? facts.map(() => plain()) : [plain()];
+    this.list = facts.length ? facts.map(() => this.plain()) : [this.plain()];
     this.refresh();
   }
 
@@ -48,6 +50,7 @@ export class MaterialSet {
   apply(settings: Settings, palette: Palette): void {
     this.settings = settings;
     this.palette = palette;
+    this.marks.set(palette.region, palette.selected);
     this.refresh();
   }
 
@@ -65,15 +68,17 @@ export class MaterialSet {
       else material.color.copy(this.palette?.clay ?? new Color(0xcccccc));
     });
   }
-}
 
-function plain(): MeshPhongMaterial {
-  return new MeshPhongMaterial({
-    specular: 0x1c1f24,
-    shininess: 38,
-    side: DoubleSide,
-    polygonOffset: true,
-    polygonOffsetFactor: 1,
-    polygonOffsetUnits: 1,
-  });
+  private plain(): MeshPhongMaterial {
+    const material = new MeshPhongMaterial({
+      specular: 0x1c1f24,
+      shininess: 38,
+      side: DoubleSide,
+      polygonOffset: true,
+      polygonOffsetFactor: 1,
+      polygonOffsetUnits: 1,
+    });
+    this.marks.teach(material);
+    return material;
+  }
 }

@@ -17,6 +17,7 @@ import type { Numbers } from "../transport/frame";
 import { ColorMap } from "./color_map";
 import { MaterialSet, type MaterialFacts } from "./materials";
 import type { Palette } from "./colors";
+import { markBytes } from "./marks";
 import type { Settings } from "../core/settings";
 
 export interface DrawnMesh {
@@ -127,6 +128,7 @@ export class MeshView {
     rest.setAttribute("position", new BufferAttribute(this.spread(positions, 3, Float32Array), 3));
     rest.setAttribute("normal", new BufferAttribute(this.spread(normals, 4, Int8Array), 4, true));
     rest.deleteAttribute("scalar");
+    rest.deleteAttribute("mark");
     this.restGeometry = rest;
   }
 
@@ -179,6 +181,20 @@ export class MeshView {
     this.redraw();
   }
 
+  /** Mark points as parts of a region and of its handle, (n,) bits of both; null = none. */
+  setMarks(marks: Uint8Array | null): void {
+    if (marks === null) this.geometry.deleteAttribute("mark");
+    else {
+      const existing = this.geometry.getAttribute("mark") as BufferAttribute | undefined;
+      const spread = this.spread(markBytes(marks), 4, Uint8Array);
+      if (existing) {
+        existing.array.set(spread);
+        existing.needsUpdate = true;
+      } else this.geometry.setAttribute("mark", dynamic(spread, 4, true));
+    }
+    this.redraw();
+  }
+
   apply(settings: Settings, palette: Palette): void {
     this.materials.apply(settings, palette);
     this.colorMap.setFlat(settings.shading === "flat");
@@ -207,7 +223,7 @@ export class MeshView {
   }
 
   /** Values of points, with those of twins appended. */
-  private spread<T extends Float32Array | Int8Array>(
+  private spread<T extends Float32Array | Int8Array | Uint8Array>(
     values: ArrayLike<number>,
     size: number,
     type: new (length: number) => T,
@@ -243,7 +259,7 @@ export class MeshView {
   }
 }
 
-function dynamic(array: Float32Array | Int8Array, size: number, normalized = false): BufferAttribute {
+function dynamic(array: Float32Array | Int8Array | Uint8Array, size: number, normalized = false): BufferAttribute {
   const attribute = new BufferAttribute(array, size, normalized);
   attribute.setUsage(DynamicDrawUsage);
   return attribute;

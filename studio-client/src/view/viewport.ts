@@ -35,6 +35,7 @@ export class Viewport {
   skipDrawing = false;
 
   private readonly lights = new Group();
+  private readonly sizes = new ResizeObserver(() => this.resize());
   private asked = false;
   private frames = 0;
 
@@ -51,7 +52,7 @@ export class Viewport {
     this.cameras.parallel.up.set(0, 0, 1);
     this.addLights();
     this.scene.add(this.ground.object, this.shape, this.helpers);
-    new ResizeObserver(() => this.resize()).observe(this.element);
+    this.sizes.observe(this.element);
   }
 
   get canvas(): HTMLCanvasElement {
@@ -157,6 +158,20 @@ export class Viewport {
     return new Promise((resolve, reject) =>
       sheet.toBlob((blob) => (blob ? resolve(blob) : reject(new Error("this picture is too large"))), "image/png"),
     );
+  }
+
+  /** Projection times view, column by column: what selections on the screen need. */
+  get seeing(): Float64Array {
+    const { active } = this.cameras;
+    active.updateMatrixWorld();
+    return new Float64Array(active.projectionMatrix.clone().multiply(active.matrixWorldInverse).elements);
+  }
+
+  dispose(): void {
+    this.sizes.disconnect();
+    this.cameras.controls.dispose();
+    this.renderer.dispose();
+    this.renderer.forceContextLoss();
   }
 
   private drawWhole(): void {

@@ -1,0 +1,133 @@
+// What the inspector says of surface editing: what is picked, by which method, named selections, the skeleton.
+
+import { h, replace } from "../../core/dom";
+import { t } from "../../core/strings";
+import { button, checkbox, iconButton, numberField, row, segments } from "../../panels/controls";
+import type { Studio } from "../../studio";
+import type { Convergence } from "./convergence";
+import type { Part, Region } from "./region";
+import type { SkeletonChoice, SkeletonShow, Where } from "./skeleton_show";
+import { METHODS, type Method, type SurfaceToolbar } from "./tools";
+
+export interface SurfaceActions {
+  grow: (rings: number) => void;
+  clear: () => void;
+  keep: (name: string) => void;
+  forget: (name: string) => void;
+  recall: (name: string, part: Part) => void;
+  method: (method: Method) => void;
+  /** Give what is picked to the active layer; or take the layer's own back. */
+  give: () => void;
+  back: () => void;
+  skeleton: (part: Partial<SkeletonChoice>) => void;
+  mesh: (shown: boolean) => void;
+}
+
+export class SurfacePanel {
+  readonly element = h("div", { class: "surface-panel" });
+
+  constructor(
+    private readonly studio: Studio,
+    private readonly tools: SurfaceToolbar,
+    private readonly skeleton: SkeletonShow,
+    private readonly convergence: Convergence,
+    private readonly actions: SurfaceActions,
+  ) {}
+
+  /** What is picked, and whose it is: a layer's, or nobody's yet; `other` is the layer that could take it. */
+  show(region: Region | null, own: string | null, other: string | null): void {
+    const typed = this.element.contains(document.activeElement) && document.activeElement instanceof HTMLInputElement;
+    if (typed && document.activeElement!.getAttribute("aria-label") === t("selectionName")) return;
+    replace(
+      this.element,
+      this.counts(region),
+      h(
+        "div",
+        { class: "button-row" },
+        iconButton("plus", `${t("grow")} (+)`, () => this.actions.grow(1)),
+        iconButton("minus", `${t("shrink")} (−)`, () => this.actions.grow(-1)),
+        button(t("clear"), () => this.actions.clear()),
+      ),
+      row(t("method"), segments(METHODS.map((name) => [name, t(`method_${name}`)] as const), this.tools.now.method, this.actions.method)),
+      this.convergence.element,
+      this.whose(own, other),
+      h("h4", null, t("namedSelections")),
+      this.named(),
+      h("h4", null, t("skeleton")),
+      this.skeletonRows(),
+    );
+  }
+
+  private counts(region: Region | null): HTMLElement {
+    const line = (part: Part, label: string): HTMLElement =>
+      h("p", { class: `mark-count ${part}` }, h("i"), h("span", null, label), h("strong", null, grouped(region?.count(part) ?? 0)));
+    return h("div", { class: "mark-counts" }, line("region", t("region")), line("handle", t("handlePart")));
+  }
+
+  private whose(own: string | null, other: string | null): HTMLElement {
+    if (own !== null) return h("p", { class: "muted" }, `${t("dragsLayer")} «${own}»`);
+    if (other === null) return h("p", { class: "muted" }, t("dragMakesLayer"));
+    return h(
+      "div",
+      null,
+      h("p", { class: "muted" }, t("dragMakesLayer")),
+      h(
+        "div",
+        { class: "button-row" },
+        button(`${t("giveTo")} «${other}»`, () => this.actions.give()),
+        button(t("back"), () => this.actions.back(), { kind: "quiet" }),
+      ),
+    );
+  }
+
+  private named(): HTMLElement {
+    const name = h("input", { type: "text", class: "text-field", placeholder: t("selectionName"), "aria-label": t("selectionName"), maxLength: 60 });
+    const keep = (): void => {
+      if (!name.value.trim()) return;
+      this.actions.keep(name.value.trim());
+      name.value = "";
+      name.blur();
+    };
+    name.addEventListener("keydown", (event) => {
+      if (event.key === "Enter") keep();
+    });
+    const entries = this.studio.scene?.selections ?? [];
+    return h(
+      "div",
+      { class: "named-selections" },
+      ...entries.map(({ name: known, count }) =>
+        h(
+          "div",
+          { class: "named-selection", "data-selection": known },
+          h("span", { class: "named-name", title: known }, known),
+          h("span", { class: "muted" }, grouped(count)),
+          iconButton("region", `${t("recallRegion")}: ${known}`, () => this.actions.recall(known, "region")),
+          iconButton("target", `${t("recallHandle")}: ${known}`, () => this.actions.recall(known, "handle")),
+          iconButton("trash", `${t("remove")}: ${known}`, () => this.actions.forget(known)),
+        ),
+      ),
+      h("div", { class: "keep-row" }, name, button(t("keep"), keep)),
+    );
+  }
+
+  private skeletonRows(): HTMLElement {
+    const { choice } = this.skeleton;
+    const places = [["off", t("skeletonOff")], ["over", t("skeletonOver")], ["beside", t("skeletonBeside")]] as const;
+    const change = (part: Partial<SkeletonChoice>): void => this.actions.skeleton(part);
+    return h(
+      "div",
+      null,
+      row(t("show"), segments<Where>(places, choice.where, (where) => change({ where }))),
+      choice.where !== "off" && checkbox(t("showMesh"), this.studio.mesh.object.visible, (on) => this.actions.mesh(on)),
+      choice.where !== "off" &&
+        row(t("contours"), numberField(choice.contours, (contours) => change({ contours }), { label: t("contours"), integer: true, low: 1 })),
+      choice.where !== "off" &&
+        row(
+          t("eigenvectors"),
+          numberField(choice.eigenvectors, (eigenvectors) => change({ eigenvectors }), { label: t("eigenvectors"), integer: true, low: 2 }),
+        ),
+    );
+  }
+}
+
+const grouped = (count: number): string => count.toLocaleString("en").replaceAll(",", " ");
