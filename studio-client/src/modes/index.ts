@@ -4,7 +4,6 @@ import "./look";
 import "./points";
 import "./pull";
 import "./surface";
-import "./surface";
 import "./axial";
 import "./sites";
 import "./model";

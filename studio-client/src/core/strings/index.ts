@@ -8,13 +8,12 @@ import { MODEL } from "./model";
 import { EXTENDED } from "./extended";
 import { POINTS } from "./points";
 import { SITES } from "./sites";
-import { SURFACE } from "./surface";
 import type { Strings } from "./strings";
 import { TIME } from "./time";
 import { SURFACE } from "./surface";
 import { TOUR } from "./tour";
 
-const TABLE = { ...COMMON, ...MODEL, ...AXIAL, ...EXTENDED, ...POINTS, ...SITES, ...TIME, ...SURFACE, ...SURFACE, ...TOUR } as const satisfies Strings;
+const TABLE = { ...COMMON, ...MODEL, ...AXIAL, ...EXTENDED, ...POINTS, ...SITES, ...TIME, ...SURFACE, ...TOUR } as const satisfies Strings;
 
 export type StringKey = keyof typeof TABLE;
 
