@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import asdict
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -63,7 +62,7 @@ class Ledger:
 
     def add(self, job: Job, outcome: Outcome) -> None:
         """Write an outcome down."""
-        line = {"job": self._key(job), **asdict(outcome), "size": _size(job.output) if outcome.status == "ok" else None}
+        line = {"job": self._key(job), **vars(outcome), "size": _size(job.output) if outcome.status == "ok" else None}
         del line["resumed"]
         try:
             self._file.write(orjson.dumps(line, default=str, option=orjson.OPT_APPEND_NEWLINE))

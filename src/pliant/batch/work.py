@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass
-from hashlib import blake2b
 
 from pliant.batch.outcome import Job, Outcome, failed
 from pliant.batch.parcel import Parcel
@@ -61,11 +60,9 @@ def carry_out(parcel: Parcel, job: Job, strict: bool) -> Outcome:
 def _known(job: Job) -> Known:
     """The mesh of a job; files of equal bytes are read once, if textures would be found in the same folder."""
     data = read_bytes(job.input)
-    folder = job.input.absolute().parent
-    key = blake2b(data, digest_size=16, person=b"mesh")
-    key.update(f"{folder}/{''.join(job.input.suffixes)}".encode())
-    known: Known | None = _memory.get(key.digest())
+    key = data, str(job.input.absolute().parent), tuple(job.input.suffixes)
+    known: Known | None = _memory.get(key)
     if known is None:
         known = Known(read_mesh_bytes(data, job.input, folder=job.input.parent))
-        _memory.put(key.digest(), known, len(data) + known.room)
+        _memory.put(key, known, len(data) + known.room)
     return known

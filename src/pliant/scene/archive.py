@@ -17,7 +17,7 @@ import numpy as np
 import orjson
 from numpy.typing import NDArray
 
-from pliant.errors import UnreadableFile, UnwritableFile
+from pliant.errors import UnreadableFile
 from pliant.io.files import replacing
 from pliant.scene.keys import array_key
 from pliant.scene.values import Arrays
@@ -43,15 +43,12 @@ def write_archive(path: Path | str, manifest: Mapping[str, Any], arrays: Arrays)
         key = array_key(array).hex()
         file = files.setdefault(key, f"arrays/{len(files)}.npy")
         stored[file], named[name] = array, {"file": file, "hash": key}
-    try:
-        with replacing(path, durable=True) as temporary, zipfile.ZipFile(temporary, "w") as archive:
-            text = orjson.dumps({**manifest, "arrays": named}, option=orjson.OPT_INDENT_2)
-            archive.writestr(zipfile.ZipInfo(MANIFEST), text)
-            for file, array in stored.items():
-                with archive.open(zipfile.ZipInfo(file), "w", force_zip64=True) as stream:
-                    np.lib.format.write_array(stream, np.ascontiguousarray(array), allow_pickle=False)
-    except OSError as error:
-        raise UnwritableFile(path, error.strerror or str(error)) from error
+    with replacing(path, durable=True) as temporary, zipfile.ZipFile(temporary, "w") as archive:
+        text = orjson.dumps({**manifest, "arrays": named}, option=orjson.OPT_INDENT_2)
+        archive.writestr(zipfile.ZipInfo(MANIFEST), text)
+        for file, array in stored.items():
+            with archive.open(zipfile.ZipInfo(file), "w", force_zip64=True) as stream:
+                np.lib.format.write_array(stream, np.ascontiguousarray(array), allow_pickle=False)
 
 
 def read_archive(path: Path | str) -> tuple[dict[str, Any], Arrays]:

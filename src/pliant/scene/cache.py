@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections import OrderedDict
+from collections.abc import Hashable
 from threading import Lock
 from typing import Any
 
@@ -20,10 +21,10 @@ class Cache:
 
     def __init__(self, budget: int = BUDGET) -> None:
         self._budget, self._bytes = budget, 0
-        self._entries: OrderedDict[bytes, tuple[Any, int]] = OrderedDict()
+        self._entries: OrderedDict[Hashable, tuple[Any, int]] = OrderedDict()
         self._lock = Lock()
 
-    def get(self, key: bytes) -> Any:
+    def get(self, key: Hashable) -> Any:
         """The value of a key, or None."""
         with self._lock:
             if key not in self._entries:
@@ -31,7 +32,7 @@ class Cache:
             self._entries.move_to_end(key)
             return self._entries[key][0]
 
-    def put(self, key: bytes, value: Any, size: int = 0) -> None:
+    def put(self, key: Hashable, value: Any, size: int = 0) -> None:
         """Keep a value of so many bytes, and forget others if there is no room."""
         with self._lock:
             _, before = self._entries.pop(key, (None, 0))

@@ -18,7 +18,7 @@ from pliant.deformer import Deformer, SpaceDeformer
 from pliant.errors import InvalidParameter, PliantError
 from pliant.mesh import PolygonMesh
 from pliant.scene.fields import Field, arguments_of, fields_of, plain
-from pliant.scene.rooms import deformer_classes, kind_name
+from pliant.scene.rooms import deformer_classes, known_as
 from pliant.scene.values import Arrays, encode_fields, make
 
 MOST_CONTROLS = 10_000_000  # of what is laid by a description: one that asks for more asks for the whole machine
@@ -131,8 +131,8 @@ def kind_of(deformer: Deformer) -> Kind:
     InvalidParameter
         It is a private one, or one that is no record of its fields.
     """
-    name = kind_name(type(deformer))
-    if deformer_classes().get(name) is not type(deformer):
+    name = known_as(type(deformer))
+    if name is None:
         raise InvalidParameter(
             f"a {type(deformer).__name__} is no kind of deformer that data can describe: make it a frozen dataclass"
         )

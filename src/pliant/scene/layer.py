@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pliant.deformer import Deformer, SpaceDeformer
-from pliant.errors import InvalidParameter, InvalidTarget
+from pliant.errors import InvalidControls, InvalidParameter, InvalidTarget
 from pliant.mesh import Points
 from pliant.numerics.chunks import for_chunks
 from pliant.numerics.ragged import frozen
@@ -90,6 +90,12 @@ class Layer:
             new.__dict__.update({name: value for name, value in self.__dict__.items() if name == "structure"})
         return new
 
+    def moved(self, controls: ArrayLike) -> Layer:
+        """The same layer with its deformer's controls elsewhere: its structure stays."""
+        new = replace(self, deformer=self.deformer.moved(controls))
+        new.__dict__["structure"] = self.structure
+        return new
+
     @property
     def in_space(self) -> bool:
         """Whether its deformer is a map of space."""
@@ -103,7 +109,11 @@ class Layer:
     @cached_property
     def content(self) -> bytes:
         """The key of all that its result depends on."""
-        return key_of(self.deformer, self.mask, self.invert and self.mask is not None, self.envelope)
+        try:
+            controls = self.deformer.controls
+        except InvalidControls:  # at rest, wherever that is
+            controls = None
+        return key_of(self.structure, controls, self.mask, self.invert and self.mask is not None, self.envelope)
 
     @cached_property
     def strength(self) -> Strength:

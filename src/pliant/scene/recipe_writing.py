@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pliant.errors import InvalidParameter, UnwritableFile
+from pliant.errors import InvalidParameter
 from pliant.io.files import write_bytes
 from pliant.scene.clip import Clip
 from pliant.scene.fields import fields_of
@@ -46,10 +46,7 @@ def write_recipe(source: Stack | Clip, path: Path | str, *, title: str = "", abo
         The disk is full, or the place is not writable.
     """
     text = _HEADLINE + toml_text(recipe_document(source, title=title, about=about))
-    try:
-        write_bytes(path, text.encode())
-    except OSError as error:
-        raise UnwritableFile(path, error.strerror or str(error)) from error
+    write_bytes(path, text.encode())
 
 
 def recipe_document(source: Stack | Clip, *, title: str = "", about: str = "") -> dict[str, Any]:

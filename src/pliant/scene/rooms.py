@@ -34,6 +34,13 @@ def deformer_classes() -> dict[str, type[Deformer]]:
     return dict(sorted(found.items()))
 
 
+@cache
+def known_as(kind: type[Deformer]) -> str | None:
+    """The name by which a kind of deformer is found, if it is."""
+    name = kind_name(kind)
+    return name if deformer_classes().get(name) is kind else None
+
+
 def kind_name(kind: type) -> str:
     """The name of a kind: ``BSplineFFD`` is ``bspline-ffd``."""
     return re.sub(r"(?<=[a-z])(?=[A-Z])", "-", kind.__name__).lower()

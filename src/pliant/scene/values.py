@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 
 from pliant.deformer import Deformer
 from pliant.errors import InvalidParameter, PliantError
-from pliant.scene.rooms import deformer_classes, kind_name, records
+from pliant.scene.rooms import deformer_classes, known_as, records
 
 Arrays = dict[str, NDArray[Any]]
 Opaque = Callable[[Any], str]
@@ -60,9 +60,8 @@ def encode(value: Any, arrays: Arrays, name: str, opaque: Opaque | None = None) 
     if isinstance(value, Mapping):
         return {"mapping": {str(key): encode(item, arrays, f"{name}/{key}", opaque) for key, item in value.items()}}
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
-        label = kind_name(type(value)) if isinstance(value, Deformer) else type(value).__name__
-        tag, known = ("kind", deformer_classes()) if isinstance(value, Deformer) else ("record", records())
-        if known.get(label) is type(value):
+        tag, label = ("kind", known_as(type(value))) if isinstance(value, Deformer) else ("record", _recorded(value))
+        if label is not None:
             return {tag: label, "fields": encode_fields(value, arrays, name, opaque)}
     if opaque is not None:
         return {"opaque": opaque(value)}
@@ -126,6 +125,11 @@ def make(kind: type[Any], fields: Mapping[str, Any], arrays: Mapping[str, NDArra
         raise InvalidParameter(f"no {kind.__name__} can be made of these fields: {error}") from error
 
 
+def _recorded(value: Any) -> str | None:
+    name = type(value).__name__
+    return name if records().get(name) is type(value) else None
+
+
 def _number(value: Any) -> Any:
     plain = value.item() if isinstance(value, np.generic) else value
     if isinstance(plain, complex):
@@ -147,7 +151,7 @@ def _stored(data: dict[str, Any], arrays: Mapping[str, NDArray[Any]]) -> NDArray
     if isinstance(name, list):
         try:
             return np.array(name, _DTYPES[data.get("dtype", "float64")])
-        except (TypeError, ValueError, KeyError) as error:
+        except (TypeError, ValueError, KeyError, OverflowError) as error:
             raise InvalidParameter(f"an array is not one of numbers: {error}") from error
     if not isinstance(name, str) or name not in arrays:
         raise InvalidParameter(f"the array {name!r} is missing")

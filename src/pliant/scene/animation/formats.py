@@ -62,7 +62,7 @@ def export_clip(clip: Clip, path: Path | str, *, progress: Progress | None = Non
             )
     try:
         report: LossReport = writer(clip, Path(path), progress, **options)
-    except OSError as error:
+    except OSError as error:  # of what a format keeps beside its file
         raise UnwritableFile(path, error.strerror or str(error)) from error
     return report
 
