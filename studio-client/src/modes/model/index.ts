@@ -38,7 +38,8 @@ class ModelMode implements Mode {
   readonly tour = modelTour;
   readonly probe = {
     landmarks: () => [...(this.model?.vertices ?? [])],
-    screen: (index: number) => this.screen(index),
+    screen: (index: number) => (this.model && index < this.model.landmarks ? this.onPage(this.model.landmark(index)) : null),
+    project: (at: [number, number, number]) => this.onPage(new Vector3(...at)),
     coefficients: () => [...(this.model?.coefficients ?? [])],
     painted: () => this.studio.paint.value !== null,
     target: () => this.target.shown,
@@ -242,10 +243,9 @@ class ModelMode implements Mode {
     return mesh.pointOf(corners[away.indexOf(Math.min(...away))]!);
   }
 
-  private screen(index: number): { x: number; y: number } | null {
-    if (!this.model || index >= this.model.landmarks) return null;
+  private onPage(at: Vector3): { x: number; y: number } {
     const { left, top } = this.studio.viewport.canvas.getBoundingClientRect();
-    const { x, y } = this.studio.viewport.project(this.model.landmark(index));
+    const { x, y } = this.studio.viewport.project(at);
     return { x: x + left, y: y + top };
   }
 
