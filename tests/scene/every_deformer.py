@@ -7,6 +7,7 @@ from scene_shapes import GOAL, HANDLE, MESH, ROI, lattice
 
 import pliant as pl
 from pliant.deformer import Deformer
+from pliant.shape.conditioned_model import ConditionedModel
 from pliant.space.summed import Summed
 
 
@@ -55,6 +56,7 @@ def every_deformer() -> dict[str, Deformer]:
         "inverse": pl.Inverse(pl.Twist.around(MESH, angle=0.4)),
         "laplacian-edit": pl.LaplacianEdit(ROI, HANDLE, goal=GOAL, pull=np.full(len(HANDLE), 2.0), method="naive"),
         "laplacian-edit at rest": pl.LaplacianEdit(ROI, HANDLE),
+        "conditioned-model": ConditionedModel(model, np.linspace(-1, 1, model.count), [3], MESH.points[[3]] + 0.1),
         "model-deformer": model.deformer(np.linspace(-1, 1, model.count)),
         "model-deformer surface": pl.ShapeModel.from_kernel(MESH, kernel, rank=9).deformer(interpolation="surface"),
         "placed": pl.place(lattice(), pl.Affine.translation([0.1, 0, 0.2])),
