@@ -16,6 +16,7 @@ from pliant.face.photograph import read_photograph
 from pliant.face.picture import Picture
 from pliant.face.pose import pose_of, to_face, to_photograph
 from pliant.face.topology import boundary_loops, mean_face
+from pliant.io.files import write_bytes
 from pliant.io.meshes import write
 from pliant.io.report import LossReport
 from pliant.mesh import CornerValues, FaceLabels, Material, Points, PolygonMesh
@@ -79,7 +80,7 @@ class Face:
         with TemporaryDirectory() as folder:
             stem = path.name.split(".")[0].replace(" ", "_") or "face"
             picture = Path(folder) / f"{stem}.png"
-            picture.write_bytes(self.picture.png())
+            write_bytes(picture, self.picture.png())
             skin = Material("skin", (1.0, 1.0, 1.0), picture)
             dressed = self.mesh.replace(material_library={"skin": skin}, source=picture.with_suffix(".obj"))
             return write(dressed, path, strict=strict)

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
+from pliant.io.files import write_bytes
 from pliant.mesh import Points
 
 if TYPE_CHECKING:
@@ -65,7 +66,7 @@ class Picture:
     def file(self) -> Path:
         """The picture as a file, for whatever draws a mesh that wears it; it is gone when the program ends."""
         path = Path(_folder().name) / f"{id(self):x}.png"
-        path.write_bytes(self.png())
+        write_bytes(path, self.png())
         return path
 
     def __reduce__(self) -> tuple[object, ...]:

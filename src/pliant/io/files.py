@@ -8,7 +8,7 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
-from pliant.errors import UnreadableFile
+from pliant.errors import UnreadableFile, UnwritableFile
 
 
 def read_bytes(path: Path | str) -> bytes:
@@ -35,8 +35,21 @@ def replacing(path: Path | str, *, durable: bool = False) -> Iterator[Path]:
 
     Whoever reads the target sees the old file or the new one, never a part. ``durable`` waits until the disk has
     it, for what nobody can make again: a loss of power then costs nothing either.
+
+    Raises
+    ------
+    UnwritableFile
+        The disk is full, or the place is not writable.
     """
-    target = Path(path)
+    try:
+        with _renamed(Path(path), durable=durable) as temporary:
+            yield temporary
+    except OSError as error:
+        raise UnwritableFile(path, error.strerror or str(error)) from error
+
+
+@contextmanager
+def _renamed(target: Path, *, durable: bool) -> Iterator[Path]:
     target.parent.mkdir(parents=True, exist_ok=True)
     handle, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.stem}-", suffix=target.suffix)
     os.close(handle)
@@ -55,7 +68,7 @@ def replacing(path: Path | str, *, durable: bool = False) -> Iterator[Path]:
 
 
 def write_bytes(path: Path | str, parts: bytes | Iterable[bytes | memoryview]) -> None:
-    """Write a file atomically from its bytes, or from pieces of them."""
+    """Write a file atomically from its bytes, or from pieces of them; raises as :func:`replacing` does."""
     with replacing(path) as temporary, temporary.open("wb") as stream:
         if isinstance(parts, bytes):
             stream.write(parts)

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pliant.errors import MissingExtra
+from pliant.errors import MissingExtra, UnwritableFile
 from pliant.io import polydata_process
 from pliant.io.carrier import carrier_of, with_carrier
 from pliant.io.format import Encoded, Keeps, MeshFormat, Source
@@ -148,7 +148,10 @@ def _new_file(mesh: PolygonMesh, keeps: Keeps) -> Encoded:
     data = {name: [each.astype(np.int32) for each in tags] for name in (_PHYSICAL, "gmsh:geometrical")}
     with tempfile.TemporaryDirectory(prefix="pliant-") as folder:
         path = Path(folder, "mesh.msh")
-        meshio.write(path, meshio.Mesh(mesh.points, blocks, cell_data=data), file_format="gmsh22", binary=True)
+        try:
+            meshio.write(path, meshio.Mesh(mesh.points, blocks, cell_data=data), file_format="gmsh22", binary=True)
+        except OSError as error:  # the folder of temporary files is full
+            raise UnwritableFile(path, error.strerror or str(error)) from error
         return Encoded([path.read_bytes()], tuple(losses))
 
 

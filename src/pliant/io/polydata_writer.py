@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pliant.errors import UnwritableFile
 from pliant.io.carrier import Carrier
 from pliant.io.format import Encoded, Keeps
 from pliant.io.losses import as_float32, losses_of, per_vertex
@@ -120,7 +121,8 @@ def _bytes(arrays: Arrays, meta: Mapping[str, Any], style: Mapping[str, bool], *
             writer.SetEncodeAppendedData(not style["raw"])
             if not style["compressed"]:
                 writer.SetCompressorTypeToNone()
-        writer.Write()
+        if not writer.Write() or writer.GetErrorCode():
+            raise UnwritableFile(path, "VTK could not write it: is there room for temporary files?")
         return path.read_bytes()
 
 
