@@ -71,6 +71,14 @@ class Request:
             raise InvalidParameter(f"{name} has {len(found)} entries; {count} are needed")
         return found
 
+    def numbers(self, name: str, count: int) -> NDArray[np.float64]:
+        """(count,) finite numbers."""
+        found = self.several(name, count)
+        plain = all(isinstance(each, (int, float)) and not isinstance(each, bool) for each in found)
+        if not plain or not all(math.isfinite(each) for each in found):
+            raise InvalidParameter(f"{name} is {found!r}; {count} finite numbers are needed")
+        return np.array(found, np.float64)
+
     def points(self, name: str) -> NDArray[np.float64]:
         """(k, 3) positions."""
         array = self.array(name)

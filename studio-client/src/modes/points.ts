@@ -89,6 +89,11 @@ export class PointsMode implements Mode {
     return { title: "selection", body: this.side.element };
   }
 
+  /** Whether the gizmo takes what is clicked. */
+  protected get overGizmo(): boolean {
+    return this.gizmo?.hot ?? false;
+  }
+
   /** The selected control points in numbers. */
   protected get numbers(): HTMLElement {
     return this.side.element;

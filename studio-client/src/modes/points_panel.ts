@@ -85,7 +85,7 @@ export class PointsPanel {
 
   private layerChoice(points: ControlPoints): HTMLElement {
     const place = points.last === null ? [0, 0, 0] : points.place(points.last)!.map((index) => Math.max(index, 0));
-    const letters = points.round ? [t("around_axis"), t("outwards"), t("along_axis")] : LETTERS;
+    const letters = points.round ? (["θ", "r", "h"] as const) : LETTERS;
     return row(
       t("layerOf"),
       ...letters.map((letter, axis) =>

@@ -24,7 +24,10 @@ export function chooseDeformer(studio: Studio, anchor: HTMLElement): void {
   };
   search.addEventListener("input", fill);
   search.addEventListener("keydown", (event) => {
-    if (event.key === "Enter") list.querySelector<HTMLElement>("button")?.click();
+    if (event.key === "Enter") {
+      event.preventDefault(); // else it would press a button of the dialog that opens
+      list.querySelector<HTMLElement>("button")?.click();
+    }
     event.stopPropagation();
   });
   fill();

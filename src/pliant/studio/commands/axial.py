@@ -36,8 +36,7 @@ class HandleDrag(Dragging):
         self._handle = _named(self._tool, name)
 
     def move(self, request: Request) -> tuple[NDArray[np.integer], Points, dict[str, NDArray[Any]]]:
-        ray = request.several("ray", 6)
-        eye, direction = (np.array([float(value) for value in part]) for part in (ray[:3], ray[3:]))
+        eye, direction = np.split(request.numbers("ray", 6), 2)
         self._tool = followed(self._tool, self._handle, Ray(eye, unit_axis(direction)))
         shown = snapped(self._tool, self._handle) if request.truth("snap") else self._tool
         before = self._binding.result

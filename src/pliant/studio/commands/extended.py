@@ -37,7 +37,7 @@ def _made(session: Session, request: Request) -> ExtendedFFD:
     points, part = session.shown.binding.result, request.text("part", "")
     target: Any = points[vertices_of(scene, part)] if part else points
     kind, axis, margin = request.text("kind"), request.text("axis"), request.number("margin", 0.05)
-    around, outwards, along = (int(count) for count in request.several("shape", 3))
+    around, outwards, along = request.numbers("shape", 3).astype(int).tolist()
     if around * outwards * along > MOST_CONTROLS:
         raise InvalidParameter(f"that lattice has more than {MOST_CONTROLS:,} control points: take fewer")
     if kind == "cylinder":

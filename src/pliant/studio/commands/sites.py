@@ -85,11 +85,11 @@ def remove(session: Session, request: Request) -> None:
 def _clicked(session: Session, request: Request, layer: str) -> Points:
     """(1, 3) where a clicked place of the surface rests: below the layer, or where it is now for a new one."""
     mesh, shown = session.required.mesh, session.shown.binding
-    corners = [int(vertex) for vertex in request.several("triangle", 3)]
+    corners = request.numbers("triangle", 3).astype(np.int64).tolist()
     if not all(0 <= vertex < len(mesh.points) for vertex in corners):
         raise InvalidParameter(f"the triangle {corners} is none of this mesh")
-    weights = np.array([float(value) for value in request.several("weights", 3)])
-    if not np.isfinite(weights).all() or abs(weights.sum() - 1) > 1e-3:
+    weights = request.numbers("weights", 3)
+    if abs(weights.sum() - 1) > 1e-3:
         raise InvalidParameter(f"the weights {weights.tolist()} of a triangle's corners must sum to one")
     points = shown.below(layer) if layer else shown.result
     return np.asarray(weights[None] @ points[corners])

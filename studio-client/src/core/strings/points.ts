@@ -10,9 +10,6 @@ export const POINTS = {
   take_layer: ["Layer", "层"],
   take_edge: ["Edge", "边"],
   take_face: ["Face", "面"],
-  around_axis: ["around", "环向"],
-  outwards: ["out", "径向"],
-  along_axis: ["along", "轴向"],
   influence: ["Influence", "影响"],
   influenceUnit: ["share of its move", "随动比例"],
 } as const satisfies Strings;

@@ -12,7 +12,7 @@ export const SITES = {
   scatter: ["Scatter", "散布"],
   scatterNow: ["Scatter over the surface", "散布到曲面"],
   smoothSites: ["Smooth at the sites (Farin)", "控制点处光滑（Farin）"],
-  mirrorSites: ["To the other side", "镜像到另一侧"],
+  mirrorSites: ["Other side", "另一侧"],
   newSites: ["New layer", "新图层"],
   deleteSites: ["Delete selected", "删除所选"],
   did_sites: ["Sites of", "控制点"],

@@ -1,6 +1,5 @@
 // Sites: control points that are put onto the surface by a click, and dragged (Dirichlet free-form deformation).
 
-import { Vector3 } from "three";
 import { h, replace } from "../../core/dom";
 import type { IconName } from "../../core/icons";
 import type { StringKey } from "../../core/strings";
@@ -35,6 +34,8 @@ class SitesMode extends PointsMode {
   /** Places of a new layer's sites, as long as there are too few. */
   private waiting = new Float64Array();
   private ends: (() => void)[] = [];
+  /** Clicks are done one after another: a site goes where the one before it has led. */
+  private queue: Promise<void> = Promise.resolve();
 
   constructor(studio: Studio) {
     super(studio);
@@ -53,7 +54,7 @@ class SitesMode extends PointsMode {
     this.pins = new Handles(studio.viewport);
     this.preferSites();
     this.ends = [
-      listenClicks(studio.viewport, (x, y) => void this.place(x, y)),
+      listenClicks(studio.viewport, (x, y) => this.click(x, y)),
       studio.meshLoaded.onChange(() => this.wait(new Float64Array())),
     ];
   }
@@ -106,20 +107,19 @@ class SitesMode extends PointsMode {
   }
 
   /** Put a site where the surface was clicked. */
-  private async place(x: number, y: number): Promise<void> {
+  private click(x: number, y: number): void {
     const { studio } = this;
-    const hit = this.find({ x, y, shift: false, alt: false, ctrl: false, touch: false })
-      ? null
-      : studio.viewport.ray(x, y).intersectObject(studio.mesh.target, false)[0];
+    const taken = this.overGizmo || this.find({ x, y, shift: false, alt: false, ctrl: false, touch: false });
+    const hit = taken ? null : studio.viewport.ray(x, y).intersectObject(studio.mesh.target, false)[0];
     if (!hit?.face || !hit.barycoord) return;
     const { a, b, c } = hit.face;
     const mirror = this.tools.now.mirror;
-    await this.began("sites.place", {
-      layer: this.points?.layer ?? "",
+    const place = {
       triangle: [a, b, c].map((vertex) => studio.mesh.pointOf(vertex)),
-      weights: new Vector3().copy(hit.barycoord).toArray(),
+      weights: hit.barycoord.toArray(),
       ...(mirror === null ? {} : { mirror }),
-    });
+    };
+    this.queue = this.queue.then(() => this.began("sites.place", { layer: this.points?.layer ?? "", ...place }));
   }
 
   /** What makes sites: they are shown, and the new one is selected. */

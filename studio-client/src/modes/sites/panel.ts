@@ -52,7 +52,7 @@ export class SitesPanel {
       row(
         t("mirrorSites"),
         segments([["0", "x"], ["1", "y"], ["2", "z"]], this.axis, (axis) => (this.axis = axis)),
-        button(t("mirror"), () => this.actions.mirror(Number(this.axis)), { icon: "mirror" }),
+        button(t("add"), () => this.actions.mirror(Number(this.axis)), { icon: "mirror" }),
       ),
       h(
         "div",
