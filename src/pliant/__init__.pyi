@@ -13,6 +13,7 @@ from .cages.own import cage_from_mesh as cage_from_mesh
 from .errors import PliantError as PliantError
 from .errors import PliantWarning as PliantWarning
 from .face.acting import expression_clip as expression_clip
+from .face.caricature_deformer import FaceCaricature as FaceCaricature
 from .face.dense import dense_face as dense_face
 from .face.exaggeration import Caricature as Caricature
 from .face.exaggeration import caricature as caricature

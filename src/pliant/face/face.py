@@ -109,7 +109,22 @@ def face_from_photo(source: Path | str | ArrayLike, number: int = 0) -> Face:
 
 
 def faces_from_photo(source: Path | str | ArrayLike) -> list[Face]:
-    """All faces in a photograph, the largest first; arguments and errors as for :func:`face_from_photo`."""
+    """All faces in a photograph, the largest first.
+
+    Parameters
+    ----------
+    source
+        A picture file, or an array of pixels: see :func:`pliant.face.photograph.read_photograph`.
+
+    Raises
+    ------
+    UnreadableFile
+        No picture, or a part of one.
+    NoFace
+        No face is found.
+    MissingExtra
+        The extra ``face`` is not installed.
+    """
     image = read_photograph(source)
     return [_face(found, Picture.around(image, found.points)) for found in find_landmarks(image)]
 

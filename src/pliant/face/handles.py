@@ -47,14 +47,12 @@ class FaceHandles(SpaceDeformer):
     displacements: Controls | None = None
 
     def __post_init__(self) -> None:
-        points = np.asarray(self.landmarks, np.float64)
-        if points.shape != (COUNT, 3) or not np.isfinite(points).all():
-            raise InvalidDeformer(f"landmarks must be finite and of shape ({COUNT}, 3); theirs is {points.shape}")
+        points = checked_landmarks(self.landmarks)
         shape = (sites()[1].shape[1], 3)
         moves = np.zeros(shape) if self.displacements is None else np.asarray(self.displacements, np.float64)
         if moves.shape != shape or not np.isfinite(moves).all():
             raise InvalidDeformer(f"displacements must be finite and of shape {shape}; theirs is {moves.shape}")
-        object.__setattr__(self, "landmarks", frozen(points, np.float64))
+        object.__setattr__(self, "landmarks", points)
         object.__setattr__(self, "displacements", frozen(moves, np.float64))
 
     @cached_property
@@ -111,3 +109,17 @@ class FaceHandles(SpaceDeformer):
     @cached_property
     def _sites(self) -> DirichletFFD:
         return DirichletFFD(self.landmarks[sites()[0]])
+
+
+def checked_landmarks(landmarks: ArrayLike) -> Points:
+    """(468, 3) landmarks, read-only.
+
+    Raises
+    ------
+    InvalidDeformer
+        Another number of them, or values that are not finite.
+    """
+    points = np.asarray(landmarks, np.float64)
+    if points.shape != (COUNT, 3) or not np.isfinite(points).all():
+        raise InvalidDeformer(f"landmarks must be finite and of shape ({COUNT}, 3); theirs is {points.shape}")
+    return np.asarray(frozen(points, np.float64))

@@ -18,7 +18,7 @@ from typing import Any
 from pliant.deformer import Deformer
 
 ROOMS = ("pliant.space", "pliant.surface", "pliant.shape")
-ABOVE = ("pliant.face.handles",)  # deformers in rooms above this one
+ABOVE = ("pliant.face.caricature_deformer", "pliant.face.handles")  # deformers in rooms above this one
 RECORDS = ("pliant.attributes", "pliant.mesh", "pliant.numerics.patch_block", "pliant.numerics.ragged")
 
 
