@@ -21,6 +21,11 @@ _STEP, _IGES = (".step", ".stp"), (".iges", ".igs")
 def read(path: Path | str) -> Part:
     """Read a part; lengths become millimetres.
 
+    Parameters
+    ----------
+    path
+        A STEP or IGES file.
+
     Raises
     ------
     UnreadableFile
@@ -43,6 +48,13 @@ def read(path: Path | str) -> Part:
 
 def write(part: Part, path: Path | str) -> None:
     """Write a part, in millimetres.
+
+    Parameters
+    ----------
+    part
+        What to write.
+    path
+        Ends in ``.step``, ``.stp``, ``.iges`` or ``.igs``.
 
     Raises
     ------

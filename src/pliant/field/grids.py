@@ -54,7 +54,13 @@ class WarpedGrid:
         return PolygonMesh(self.points, lines=self.lines, vertex_attributes={"displacement": self.displacement})
 
     def save(self, path: Path | str) -> LossReport:
-        """Write the lines with their displacements, for instance as VTK polydata (``.vtp``)."""
+        """Write the lines with their displacements.
+
+        Parameters
+        ----------
+        path
+            The ending says how: ``.vtp`` is VTK polydata.
+        """
         from pliant.io.meshes import write
 
         return write(self.as_mesh(), path)

@@ -62,6 +62,11 @@ def is_image(data: bytes) -> bool:
 def read_image(path: Path | str) -> Image:
     """An image from a NIfTI or MetaImage file, told by its content.
 
+    Parameters
+    ----------
+    path
+        The file: ``.nii``, ``.nii.gz``, ``.mha`` or ``.mhd``; axes are turned to RAS, lengths are millimetres.
+
     Raises
     ------
     UnreadableFile
@@ -85,6 +90,18 @@ def read_image(path: Path | str) -> Image:
 
 def write_image(image: Image, path: Path | str) -> LossReport:
     """Write an image to the format that the ending names.
+
+    Parameters
+    ----------
+    image
+        What to write.
+    path
+        Ends in ``.nii``, ``.nii.gz``, ``.mha`` or ``.mhd``.
+
+    Returns
+    -------
+    LossReport
+        What the format could not hold.
 
     Raises
     ------

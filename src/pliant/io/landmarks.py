@@ -107,6 +107,11 @@ class Landmarks:
 def read_landmarks(path: Path | str) -> Landmarks:
     """Landmarks of a file, as they stand there.
 
+    Parameters
+    ----------
+    path
+        Ends in ``.csv``, ``.json`` (Scalismo), ``.mrk.json`` or ``.fcsv`` (3D Slicer).
+
     Raises
     ------
     UnsupportedFormat

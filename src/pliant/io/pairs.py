@@ -16,6 +16,11 @@ def read_pairs(path: Path | str) -> NDArray[np.int64]:
 
     A first line that holds one number is the count of pairs. ``#`` begins a comment.
 
+    Parameters
+    ----------
+    path
+        The file; markers of :class:`~pliant.surface.transfer.DeformationTransfer` are such pairs.
+
     Raises
     ------
     UnreadableFile
@@ -45,7 +50,14 @@ def read_pairs(path: Path | str) -> NDArray[np.int64]:
 
 
 def write_pairs(pairs: ArrayLike, path: Path | str) -> None:
-    """Write (k, 2) pairs of indices as :func:`read_pairs` reads them.
+    """Write pairs of indices as :func:`read_pairs` reads them.
+
+    Parameters
+    ----------
+    pairs
+        (k, 2) indices, counted from 0.
+    path
+        Where to; any ending.
 
     Raises
     ------

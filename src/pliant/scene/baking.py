@@ -48,6 +48,13 @@ def bake_shape_keys(stack: Stack, mesh: PolygonMesh) -> ShapeKeys:
     """Every active layer as a shape key: what it adds to the result of those below, with weight 1.
 
     With all weights 1 the keys are the stack; with others each layer is more or less of itself, in proportion.
+
+    Parameters
+    ----------
+    stack
+        Whose layers become keys, named as they are.
+    mesh
+        The shape at rest, whose vertices the keys move.
     """
     before, moves, names = mesh.points, [], []
     for count, layer in enumerate(stack.active, start=1):

@@ -11,13 +11,25 @@ Floats = NDArray[np.float64]
 
 
 def r_hat(samples: Floats) -> Floats:
-    """(k,) how much wider all chains (chains, draws, k) together are than each half of one: 1 when converged."""
+    """(k,) how much wider all chains together are than each half of one: 1 when converged.
+
+    Parameters
+    ----------
+    samples
+        (chains, draws, k) states, as ``metropolis_hastings(...).samples``.
+    """
     _, within, together = _variances(samples)
     return np.asarray(np.sqrt(np.divide(together, within, out=np.full_like(within, np.inf), where=within > 0)))
 
 
 def effective_sample_size(samples: Floats) -> Floats:
-    """(k,) how many independent draws are worth as much, by Geyer's initial positive sequence."""
+    """(k,) how many independent draws are worth as much, by Geyer's initial positive sequence.
+
+    Parameters
+    ----------
+    samples
+        (chains, draws, k) states, as ``metropolis_hastings(...).samples``.
+    """
     halves, _, together = _variances(samples)
     count, draws, _ = halves.shape
     centered = halves - halves.mean(axis=1, keepdims=True)

@@ -119,7 +119,15 @@ class Stationary(Kernel):
 
 @dataclass(frozen=True)
 class GaussianKernel(Stationary):
-    """scale² exp(−r² / sigma²): Scalismo's convention, without a factor of one half in the exponent."""
+    """scale² exp(−r² / sigma²): Scalismo's convention, without a factor of one half in the exponent.
+
+    Parameters
+    ----------
+    sigma
+        The distance at which correlation has fallen to 1/e, in the mesh's unit; positive.
+    scale
+        The amplitude: the standard deviation of each coordinate of a displacement, in the mesh's unit.
+    """
 
     def profile(self, s: Floats) -> Floats:
         np.negative(s, out=s)
@@ -131,7 +139,15 @@ class GaussianKernel(Stationary):
 
 @dataclass(frozen=True)
 class ExponentialKernel(Stationary):
-    """scale² exp(−r / sigma): rough fields, continuous but without derivative."""
+    """scale² exp(−r / sigma): rough fields, continuous but without derivative.
+
+    Parameters
+    ----------
+    sigma
+        The distance at which correlation has fallen to 1/e, in the mesh's unit; positive.
+    scale
+        The amplitude: the standard deviation of each coordinate of a displacement, in the mesh's unit.
+    """
 
     def profile(self, s: Floats) -> Floats:
         return np.asarray(np.exp(-np.sqrt(s)))
@@ -147,6 +163,10 @@ class MaternKernel(Stationary):
 
     Parameters
     ----------
+    sigma
+        The length over which fields vary, in the mesh's unit; positive.
+    scale
+        The amplitude: the standard deviation of each coordinate of a displacement, in the mesh's unit.
     smoothness
         ν: 1.5 or 2.5. (ν = 0.5 is the exponential kernel, ν = ∞ a Gaussian one.)
     """
@@ -169,7 +189,17 @@ class MaternKernel(Stationary):
 
 @dataclass(frozen=True)
 class RationalQuadraticKernel(Stationary):
-    """scale² (1 + r² / (2 α sigma²))^(−α): Gaussian kernels of many widths (Rasmussen & Williams 2006, eq. 4.19)."""
+    """scale² (1 + r² / (2 α sigma²))^(−α): Gaussian kernels of many widths (Rasmussen & Williams 2006, eq. 4.19).
+
+    Parameters
+    ----------
+    sigma
+        The distance at which one begins to feel it, in the mesh's unit; positive.
+    scale
+        The amplitude: the standard deviation of each coordinate of a displacement, in the mesh's unit.
+    alpha
+        α: how alike the widths are; large ones give a Gaussian kernel.
+    """
 
     alpha: float = 1.0
 
@@ -182,7 +212,15 @@ class RationalQuadraticKernel(Stationary):
 
 @dataclass(frozen=True)
 class InverseMultiquadricKernel(Stationary):
-    """scale² / sqrt(1 + r² / sigma²): long tails (Hardy 1971)."""
+    """scale² / sqrt(1 + r² / sigma²): long tails (Hardy 1971).
+
+    Parameters
+    ----------
+    sigma
+        The distance at which correlation has fallen to 0.71, in the mesh's unit; positive.
+    scale
+        The amplitude: the standard deviation of each coordinate of a displacement, in the mesh's unit.
+    """
 
     def profile(self, s: Floats) -> Floats:
         return np.asarray(1 / np.sqrt(1 + s))

@@ -19,13 +19,27 @@ from pliant.shape.procrustes import moved
 
 
 def compactness(model: LinearModel) -> Floats:
-    """(rank,) which part of the variance the first fields hold, one after the other: 1 at the end."""
+    """(rank,) which part of the variance the first fields hold, one after the other: 1 at the end.
+
+    Parameters
+    ----------
+    model
+        Any model, from a kernel or learnt.
+    """
     total = np.cumsum(model.variances)
     return np.asarray(total / total[-1])
 
 
 def generalization(model: LinearModel, shapes: Sequence[PolygonMesh]) -> Floats:
-    """(s,) how far shapes that the model has not seen are from the nearest that it can make."""
+    """(s,) how far shapes that the model has not seen are from the nearest that it can make.
+
+    Parameters
+    ----------
+    model
+        Any model.
+    shapes
+        s meshes with the model's vertices, where the model is.
+    """
     return np.asarray([_apart(model.project(each), each.points) for each in shapes])
 
 
@@ -33,6 +47,20 @@ def leave_one_out(
     meshes: Sequence[PolygonMesh], *, rank: int | None = None, align: bool = True, scale: bool = False
 ) -> Floats:
     """(s,) for each example, how far it is from what a model of all others makes of it.
+
+    Parameters
+    ----------
+    meshes
+        s examples with the same vertices.
+    rank
+        How many fields the models keep; None = all.
+    align, scale
+        Whether poses, and sizes, are taken out first, as by :func:`~pliant.shape.pca.learn_model`.
+
+    Returns
+    -------
+    (s,) array
+        Root mean square distances between corresponding vertices, in the meshes' unit.
 
     Raises
     ------
@@ -53,7 +81,26 @@ def leave_one_out(
 def specificity(
     model: LinearModel, meshes: Sequence[PolygonMesh], *, samples: int = 1000, seed: int = 0, align: bool = True
 ) -> float:
-    """How far random shapes of the model are from the nearest example, in the mean."""
+    """How far random shapes of the model are from the nearest example, in the mean, in the mesh's unit.
+
+    Parameters
+    ----------
+    model
+        Any model.
+    meshes
+        Examples with the model's vertices.
+    samples
+        How many random shapes are compared.
+    seed
+        Of their coefficients.
+    align
+        Whether examples are moved onto the mean first.
+
+    Raises
+    ------
+    InvalidParameter
+        No example, or no sample.
+    """
     if not meshes or samples < 1:
         raise InvalidParameter("specificity compares at least one sample with at least one example")
     known = [_onto(each.points, model.mean) if align else each.points for each in meshes]

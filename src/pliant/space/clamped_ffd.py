@@ -60,7 +60,17 @@ class ClampedFFD(SpaceDeformer):
     def around(
         cls, target: PolygonMesh | ArrayLike, shape: tuple[int, int, int] = (4, 4, 4), margin: float = 0.0
     ) -> ClampedFFD:
-        """A lattice at rest whose box is a shape's bounding box, grown by a part of its extent on every side."""
+        """A lattice at rest whose box is a shape's bounding box.
+
+        Parameters
+        ----------
+        target
+            A mesh or (n, 3) points.
+        shape
+            How many control points there are along x, y and z.
+        margin
+            How much to grow the box on every side, as a part of its extent.
+        """
         box = BezierFFD.around(target, shape=shape, margin=margin)
         return cls(displacements=box.displacements, origin=box.origin, edges=box.edges)
 

@@ -125,7 +125,17 @@ class ExtendedFFD(SpaceDeformer):
         margin: float = 0.05,
         outside: Literal["identity", "error"] = "identity",
     ) -> ExtendedFFD:
-        """A prism at rest that wraps a shape; ``shape`` = control points outwards and along, as in :meth:`cylinder`."""
+        """A prism at rest that wraps a shape.
+
+        Parameters
+        ----------
+        target, axis, margin, outside
+            As in :meth:`cylinder`.
+        sides
+            How many flat sides it has.
+        shape
+            Control points from the axis outwards, and along it: 4, 7, 10 ...
+        """
         return cls._round(round_lattices.prism(target, axis, sides, shape, margin), outside)
 
     @classmethod
@@ -137,7 +147,15 @@ class ExtendedFFD(SpaceDeformer):
         margin: float = 0.05,
         outside: Literal["identity", "error"] = "identity",
     ) -> ExtendedFFD:
-        """A sphere (an ellipsoid) at rest that wraps a shape; ``shape`` = around, outwards, from pole to pole."""
+        """A sphere, or an ellipsoid, at rest that wraps a shape.
+
+        Parameters
+        ----------
+        target, axis, margin, outside
+            As in :meth:`cylinder`.
+        shape
+            Control points around, from the middle outwards, and from pole to pole.
+        """
         return cls._round(round_lattices.sphere(target, axis, shape, margin), outside)
 
     @classmethod

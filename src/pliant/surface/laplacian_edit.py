@@ -35,6 +35,12 @@ class LaplacianEdit(SurfaceDeformer):
 
     Parameters
     ----------
+    roi
+        The region of interest: indices of vertices, or a mask of all. What lies outside stays, bit by bit.
+    handle
+        Vertices in the region that the user moves, likewise.
+    goal
+        (h, 3) where the handle's vertices shall be: the controls; None = where they are.
     method
         One of the three.
     weights

@@ -45,6 +45,8 @@ def smooth(
     ----------
     mesh
         Any mesh with faces. Edges that bound one face only are smoothed too; a vertex without a face stays.
+    method
+        One of the four.
     iterations
         How often; 0 changes nothing.
     strength
