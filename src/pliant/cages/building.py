@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import Literal
 
 import numpy as np
@@ -33,6 +34,7 @@ def build_cage(
     *,
     method: Literal["offset", "alpha_wrap"] = "offset",
     symmetry: Literal["x", "y", "z"] | None = None,
+    progress: Callable[[float], object] = lambda _: None,
 ) -> PolygonMesh:
     """A closed, oriented manifold of triangles that encloses a mesh and does not cut itself.
 
@@ -55,6 +57,8 @@ def build_cage(
     symmetry
         Make the cage exactly symmetric about the middle of the mesh's box across this axis; it encloses the mesh and
         its mirror image.
+    progress
+        Told how far it is, from 0 to 1, of each distance that is tried; what it raises ends the work.
 
     Raises
     ------
@@ -74,14 +78,19 @@ def build_cage(
     if not len(mesh.triangles) or not mesh.diagonal > 0:
         raise InvalidTarget("a cage is built around faces, and this mesh has none")
     if symmetry is not None:
-        return _symmetric(mesh, vertices, margin, method, symmetry)
+        return _symmetric(mesh, vertices, margin, method, symmetry, progress)
     if method == "alpha_wrap":
         return alpha_wrapped(mesh, vertices, margin)
     reason = ""
     for part in (margin, *(each for each in _OFFSETS if each > margin)):
-        points, triangles = _simplified(*offset_surface(mesh, part * mesh.diagonal), vertices)
+        progress(0.0)
+        surface = offset_surface(mesh, part * mesh.diagonal)
+        progress(0.3)
+        points, triangles = _simplified(*surface, vertices)
+        progress(0.7)
         points, enclosed = push_out(points, triangles, mesh, 0.05 * part * mesh.diagonal)
         cage = PolygonMesh(points, Ragged.of(triangles))
+        progress(0.85)
         report = check_cage(cage, mesh, vertices=vertices)
         if enclosed and report.ok:
             return cage
@@ -92,13 +101,18 @@ def build_cage(
 
 
 def _symmetric(
-    mesh: PolygonMesh, vertices: int, margin: float, method: Literal["offset", "alpha_wrap"], axis: str
+    mesh: PolygonMesh,
+    vertices: int,
+    margin: float,
+    method: Literal["offset", "alpha_wrap"],
+    axis: str,
+    progress: Callable[[float], object],
 ) -> PolygonMesh:
     """Half of a cage around the mesh and its mirror image, twice; with fewer vertices while there are too many."""
     both, place = with_mirror_image(mesh, axis), float(mesh.center[checked_axis(axis)])
     reason = ""
     for share in _SHARES:
-        whole = build_cage(both, max(int(share * vertices), _LEAST), margin, method=method)
+        whole = build_cage(both, max(int(share * vertices), _LEAST), margin, method=method, progress=progress)
         cage = symmetrized(whole, axis, place)
         report = check_cage(cage, mesh, vertices=vertices)
         if report.ok:

@@ -30,6 +30,12 @@ class CageReport:
         The cage's volume over the mesh's, which says how tight it is; None where the mesh is open.
     clearance
         The least distance of a vertex of the mesh from the cage, in diagonals of the mesh; negative outside.
+    manifold
+        Whether it is closed, and around every vertex and edge a surface.
+    crossed
+        Pairs of its triangles that cut one another.
+    outside, through
+        Vertices of the mesh that are outside, and triangles of the mesh that cut through it.
     """
 
     failures: tuple[str, ...]
@@ -39,6 +45,10 @@ class CageReport:
     genus: int | None
     volume_ratio: float | None
     clearance: float
+    manifold: bool
+    crossed: int
+    outside: int
+    through: int
 
     @property
     def ok(self) -> bool:
@@ -98,6 +108,10 @@ def check_cage(cage: PolygonMesh, mesh: PolygonMesh, *, vertices: int | None = N
         _genus(cage, components) if faults.none else None,
         _tightness(cage, mesh),
         _clearance(cage, mesh, outside, np.delete(cage.triangles, flat, axis=0)),
+        bool(faults.none) and len(cage.faces) > 0,
+        len(crossed),
+        len(outside),
+        len(np.unique(pairs[:, 1])),
     )
 
 
