@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pliant.cad.geometry import Map
 from pliant.cad.joins import kinks
 from pliant.cad.kernel import kernel, parts_of
 from pliant.cad.rebuilding import rebuilt
@@ -17,6 +18,9 @@ from pliant.errors import InvalidParameter, InvalidTarget, NotConverged
 from pliant.mesh import PolygonMesh
 from pliant.numerics.ragged import Ragged
 from pliant.scene.stack import Stack
+
+_SMOOTH = 1e-5  # radians: faces that meet at less meet smoothly
+_ROUNDS = 6
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -31,7 +35,7 @@ class Part:
 
     shape: Any
 
-    def deformed(self, deformer: SpaceDeformer | Stack, *, tolerance: float | None = None) -> Part:
+    def deformed(self, deformer: SpaceDeformer | Stack, *, tolerance: float | None = None, angle: float = 1e-3) -> Part:
         """The part after a deformation: its faces are B-spline surfaces that share their edges as before.
 
         Parameters
@@ -41,27 +45,46 @@ class Part:
         tolerance
             How far new surfaces and edges may be from the exact images; knots are added until they are not. A length;
             None = a hundred-thousandth of the diagonal.
+        angle
+            How far from G¹ faces may meet that met smoothly, in radians; where they do not, the tolerance is lowered
+            until they do. The least that is asked for is 1e-5.
 
         Raises
         ------
         InvalidTarget
             The deformer is no map of space.
         InvalidParameter
-            A tolerance that is not positive.
+            A tolerance that is not positive, an angle below 1e-5.
         NotConverged
-            Hundreds of spans do not meet the tolerance, or the result is no valid solid: the deformation may fold.
+            Hundreds of spans do not meet the tolerance, faces that met smoothly do not, or the result is no valid
+            solid: the deformation may fold.
         """
         if not isinstance(deformer, SpaceDeformer | Stack):
             raise InvalidTarget(f"a {type(deformer).__name__} is no map of space: it cannot deform a part")
         allowed = 1e-5 * self.mesh().diagonal if tolerance is None else float(tolerance)
         if not 0 < allowed < np.inf:
             raise InvalidParameter(f"the tolerance is {tolerance}; it must be a positive length")
-        found = Part(rebuilt(self.shape, lambda points: np.asarray(deformer(points)), allowed))
+        if not _SMOOTH <= angle < np.inf:
+            raise InvalidParameter(f"the angle is {angle}; it must be {_SMOOTH:g} or more, in radians")
+        found = self._smoothly(lambda points: np.asarray(deformer(points)), allowed, angle)
         if self.volume > 0 > found.volume:
             found = Part(found.shape.Reversed())  # a mirror turned it inside out
         if self.valid and not found.valid:
             raise NotConverged("the deformed part is no valid solid: lower the tolerance, or see whether the map folds")
         return found
+
+    def _smoothly(self, move: Map, tolerance: float, angle: float) -> Part:
+        """The part deformed ever more exactly, until faces that met smoothly do."""
+        smooth = self.kinks <= _SMOOTH
+        for _ in range(_ROUNDS):
+            found = Part(rebuilt(self.shape, move, tolerance))
+            if found.kinks[smooth].max(initial=0.0) <= angle:
+                return found
+            tolerance /= 4
+        raise NotConverged(
+            f"faces that met smoothly meet at {found.kinks[smooth].max():.3g} radians; {angle:.3g} is wanted: allow "
+            "more, or deform more smoothly"
+        )
 
     def mesh(self, deviation: float = 1e-3) -> PolygonMesh:
         """Its surface as triangles, closed where the part is.

@@ -12,6 +12,7 @@ from pliant.cli import options as opt
 from pliant.cli.cage import CageOption, Coordinates, CoordinatesOption, PosedOption, cage_choice
 from pliant.cli.choice import Choice
 from pliant.cli.deformer_options import STEPS
+from pliant.cli.part import ToleranceOption, deform_part, is_part
 from pliant.cli.session import Session
 
 if TYPE_CHECKING:
@@ -40,6 +41,7 @@ def deform(
     move: opt.MoveOption = None,
     inverse: opt.InverseOption = False,
     mesh_space: opt.MeshSpaceOption = opt.MeshSpace.as_is,
+    tolerance: ToleranceOption = None,
     strict: opt.StrictOption = False,
     json: opt.JsonOption = False,
     quiet: opt.QuietOption = False,
@@ -48,7 +50,7 @@ def deform(
 
     Give a transform file, a new lattice whose control points you move, a cage and the same cage posed, or deformations
     such as --twist, several in turn. Polygons, texture coordinates, groups and materials stay as they are; stored
-    normals follow.
+    normals follow. A part from CAD stays one: its surfaces become B-splines.
     """
     steps = context.meta[STEPS]
     tool = free.free_lattice(dirichlet, sites_to, cylinder, prism, sphere)
@@ -68,7 +70,10 @@ def deform(
         cage_choice(cage, posed, coordinates),
     )
     with Session(json=json, quiet=quiet) as session:
-        deform_file(session, mesh, output, choice, strict=strict)
+        if is_part(mesh):
+            deform_part(session, mesh, output, choice.required, tolerance)
+        else:
+            deform_file(session, mesh, output, choice, strict=strict)
 
 
 def deform_file(session: Session, path: Path, output: Path, choice: Choice, *, strict: bool = False) -> PolygonMesh:

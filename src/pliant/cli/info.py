@@ -8,17 +8,18 @@ from typing import Annotated, Any
 import typer
 
 from pliant.cli import options as opt
+from pliant.cli.part import facts_of_part, is_part
 from pliant.cli.session import Session
 
 
 def info(
-    file: Annotated[Path, typer.Argument(metavar="FILE", show_default=False, help="A mesh, transform or image file.")],
+    file: Annotated[Path, typer.Argument(metavar="FILE", show_default=False, help="A mesh, transform, image or part.")],
     variant: opt.VariantOption = None,
     edge: opt.EdgeOption = opt.Edge.clamp,
     json: opt.JsonOption = False,
     quiet: opt.QuietOption = False,
 ) -> None:
-    """Tell what a mesh, transform or image file holds."""
+    """Tell what a mesh, a transform, an image or a part from CAD holds."""
     with Session(json=json, quiet=quiet) as session:
         from pliant.cli import facts
         from pliant.io.files import read_bytes
@@ -32,6 +33,10 @@ def info(
             deformer = read_transform(file, variant=None if variant is None else variant.value, edge=edge.value)
             conventions = {name: value for name, value in vars(known.conventions).items() if name != "holds"}
             found = {"file": str(file), "format": known.name, **conventions, **facts.of_transform(deformer)}
+        elif is_part(file):
+            from pliant.cad import read as read_part
+
+            found = {"file": str(file), **facts_of_part(read_part(file))}
         elif is_image(data):
             found = {"file": str(file), **facts.of_image(read_image(file))}
         else:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from pliant.cli import options as opt
+from pliant.cli.part import ToleranceOption, deform_part, is_part
 from pliant.cli.session import Session
 from pliant.cli.written import write_mesh
 
@@ -49,12 +50,16 @@ def apply(
     time: Annotated[
         float | None, typer.Option(metavar="SECONDS", show_default=False, help="A moment of its motion.")
     ] = None,
+    tolerance: ToleranceOption = None,
     strict: opt.StrictOption = False,
     json: opt.JsonOption = False,
     quiet: opt.QuietOption = False,
 ) -> None:
-    """Deform a mesh by a recipe, a project or a template."""
+    """Deform a mesh, or a part from CAD, by a recipe, a project or a template."""
     with Session(json=json, quiet=quiet) as session:
+        if is_part(mesh):
+            deform_part(session, mesh, output, lambda shape: _stack(recipe, shape, intensity, up), tolerance)
+            return
         import numpy as np
 
         from pliant.io.meshes import read
