@@ -118,6 +118,7 @@ export class SurfaceMode implements Mode {
     count: (part: Part) => this.region?.count(part) ?? 0,
     indices: (part: Part) => [...(this.region?.indices(part) ?? [])],
     own: () => this.own,
+    camera: () => [...this.studio.viewport.seeing],
     iterations: () => this.convergence.iterations,
     converged: () => this.convergence.converged,
     energies: () => [...this.convergence.energies],
@@ -162,7 +163,8 @@ export class SurfaceMode implements Mode {
       this.axis = this.axis === axis ? null : (axis as 0 | 1 | 2);
       this.followTools();
     } else if (key === "m") {
-      this.setMethod(METHODS[(METHODS.indexOf(this.tools.now.method) + 1) % METHODS.length]!);
+      const now = METHODS.findIndex(([name]) => name === this.tools.now.method);
+      this.setMethod(METHODS[(now + 1) % METHODS.length]![0]);
     } else if (key === "k") {
       const next = { off: "over", over: "beside", beside: "off" } as const;
       void this.skeleton.set({ where: next[this.skeleton.choice.where] }).then(() => this.look());
@@ -301,7 +303,6 @@ export class SurfaceMode implements Mode {
     const by = to.sub(at);
     if (this.axis !== null) by.set(...([0, 1, 2].map((i) => (i === this.axis ? by.getComponent(i) : 0)) as [number, number, number]));
     this.put(new Matrix4().makeTranslation(by));
-    for (const gizmo of this.gizmos) gizmo.place(this.pivot());
   }
 
   private hold(): void {
@@ -409,7 +410,7 @@ export class SurfaceMode implements Mode {
     const at = this.tools.mover ? this.pivot() : null;
     for (const gizmo of this.gizmos) {
       gizmo.useCamera();
-      if (!this.drag) gizmo.place(at);
+      gizmo.place(at);
     }
   }
 

@@ -48,7 +48,7 @@ export class SurfacePanel {
         iconButton("minus", `${t("shrink")} (−)`, () => this.actions.grow(-1)),
         button(t("clear"), () => this.actions.clear()),
       ),
-      row(t("method"), segments(METHODS.map((name) => [name, t(`method_${name}`)] as const), this.tools.now.method, this.actions.method)),
+      row(t("method"), segments(METHODS.map(([name, title]) => [name, t(title)] as const), this.tools.now.method, this.actions.method)),
       this.convergence.element,
       this.whose(own, other),
       h("h4", null, t("namedSelections")),

@@ -21,7 +21,11 @@ export interface SurfaceTools {
   method: Method;
 }
 
-export const METHODS = ["laplacian", "arap", "skeleton"] as const satisfies Method[];
+export const METHODS: readonly [Method, StringKey][] = [
+  ["laplacian", "methodLaplacian"],
+  ["arap", "methodARAP"],
+  ["skeleton", "methodSkeleton"],
+];
 
 const PICKERS: [Picker, IconName, StringKey, string][] = [
   ["rectangle", "rectangle", "toolRectangle", "B"],
