@@ -93,11 +93,11 @@ def test_keys_are_moved_doubled_eased_and_removed(moving):
     session, page = moving
     page.ask(session, "keys.begin", {"keys": [["Bend", "angle", 2.0]]})
     page.ask(session, "time.frame", {"time": 0.3})
-    answer = page.ask(session, "keys.move", {"by": -0.5, "rise": 0.25})
+    answer = page.ask(session, "keys.move", {"by": -0.5, "rise": 45.0})
     assert [key["time"] for key in answer.head["tracks"][0]["keys"]] == [0.0, 1.5]
     page.ask(session, "keys.commit")
     key = session.scene.clip.tracks[0].keys[-1]
-    assert (key.time, float(key.value), key.easing) == (1.5, 1.75, "ease_in_out")
+    assert (key.time, float(key.value), key.easing) == (1.5, pytest.approx(1.5 + np.pi / 4), "ease_in_out")
     page.ask(session, "time.goto", {"time": 0.5})
     page.ask(session, "time.double", {"keys": [["Bend", "angle", 0.0], ["Bend", "angle", 1.5]]})
     assert [key.time for key in session.scene.clip.tracks[0].keys] == [0.0, 0.5, 1.5, 2.0]
@@ -125,9 +125,9 @@ def test_drawn_curves_are_the_library_s_own():
         clip = bent_scene().clip.key("Bend", 1.2, {"angle": -0.4}, easing=easing)
         (track,) = clip.tracks
         told = track_state(clip, track)
-        expected = [float(track.at(time)) for time in told["times"]]
+        expected = [180 / np.pi * float(track.at(time)) for time in told["times"]]
         jumps = np.isclose(told["times"], 1.2)  # a step's two ends are told at one time
-        np.testing.assert_allclose(np.array(told["curves"][0])[~jumps], np.array(expected)[~jumps], atol=1e-5)
+        np.testing.assert_allclose(np.array(told["curves"][0])[~jumps], np.array(expected)[~jumps], atol=1e-3)
 
 
 def test_the_clip_s_own_numbers(moving):
@@ -191,3 +191,72 @@ def test_what_makes_no_sense_is_refused_and_changes_nothing(moving, command, val
     error = page.refused(session, command, values)
     assert error["kind"] != "Bug"
     assert session.revision == revision
+
+
+def test_placing_a_tool_sets_keys_and_the_clip_moves_it_as_the_library_does(still):
+    session, page = still
+    lattice = session.scene.stack["Lattice"].deformer
+    controls = np.array(lattice.rest)
+    controls[1, 1, 1] += [0.0, 0.0, 0.5]
+    page.ask(session, "points.set", {"layer": "Lattice"}, index=np.array([21], np.uint32), positions=controls[1, 1, 1])
+    page.ask(session, "time.goto", {"time": 2.0})
+    move = pl.Affine.rotation("z", 0.8) @ pl.Affine.translation([0.3, 0.0, 0.0])
+    page.ask(session, "place.begin", {"layer": "Lattice"})
+    page.ask(session, "place.move", {"matrix": move.matrix.reshape(-1).tolist()})
+    page.ask(session, "place.commit")
+    (track,) = session.scene.clip.tracks
+    assert (track.field, [key.time for key in track.keys]) == ("frame", [0.0, 2.0])
+    mesh, tool = session.scene.mesh, lattice.moved(controls)
+    np.testing.assert_allclose(session.shown.told, pl.place(tool, move)(mesh).points, atol=1e-12)
+    page.ask(session, "time.goto", {"time": 0.0})
+    np.testing.assert_allclose(session.shown.told, tool(mesh).points, atol=1e-12)
+    answer = page.ask(session, "place.get", {"layer": "Lattice"})
+    way, pivot = answer.arrays["way"].reshape(-1, 3), np.array(answer.head["pivot"])
+    np.testing.assert_allclose(way[0], pivot, atol=1e-12)
+    np.testing.assert_allclose(way[-1], move(pivot[None])[0], atol=1e-12)
+
+
+def test_control_points_of_a_tool_elsewhere_are_seen_and_dragged_where_they_are(still):
+    session, page = still
+    move = pl.Affine.translation([0.0, 0.0, 0.7])
+    page.ask(session, "place.begin", {"layer": "Lattice"})
+    page.ask(session, "place.move", {"matrix": move.matrix.reshape(-1).tolist()})
+    page.ask(session, "place.commit")
+    seen = page.ask(session, "points.get", {"layer": "Lattice"}).arrays["points"].reshape(-1, 3)
+    rest = session.scene.stack["Lattice"].deformer.rest.reshape(-1, 3)
+    np.testing.assert_allclose(seen, rest + [0.0, 0.0, 0.7], atol=1e-12)
+    goal = seen[5] + [0.1, 0.2, 0.3]
+    page.ask(session, "drag.begin", {"layer": "Lattice"})
+    page.ask(session, "drag.move", index=np.array([5], np.uint32), positions=goal)
+    page.ask(session, "drag.commit")
+    after = page.ask(session, "points.get", {"layer": "Lattice"}).arrays["points"].reshape(-1, 3)
+    np.testing.assert_allclose(after[5], goal, atol=1e-12)
+
+
+def test_the_object_moves_through_the_tool(moving):
+    session, page = moving
+    layer = page.ask(session, "place.through", {"layer": "Bend"}).head["layer"]
+    assert session.scene.stack.names == (layer, "Bend")
+    page.ask(session, "time.goto", {"time": 2.0})
+    page.ask(session, "place.begin", {"layer": layer})
+    move = pl.Affine.translation([1.0, 0.0, 0.0])
+    page.ask(session, "place.move", {"matrix": move.matrix.reshape(-1).tolist()})
+    page.ask(session, "place.commit")
+    mesh, bend = session.scene.mesh, bent_scene().clip.stack_at(2.0)["Bend"].deformer
+    np.testing.assert_allclose(session.shown.told, bend(move(mesh)).points, atol=1e-12)
+    page.ask(session, "time.goto", {"time": 1.0})
+    half = pl.Affine.translation([session.scene.stack[layer].deformer.offset[0], 0.0, 0.0])
+    bend = bent_scene().clip.stack_at(1.0)["Bend"].deformer
+    np.testing.assert_allclose(session.shown.told, bend(half(mesh)).points, atol=1e-12)
+    assert 0 < half.offset[0] < 1
+
+
+def test_a_placed_tool_keeps_its_properties(moving):
+    session, page = moving
+    page.ask(session, "place.begin", {"layer": "Bend"})
+    page.ask(session, "place.move", {"matrix": pl.Affine.translation([0.0, 1.0, 0.0]).matrix.reshape(-1).tolist()})
+    page.ask(session, "place.commit")
+    told = page.events("scene")[-1].head["scene"]["layers"][0]
+    assert told["kind"] == "bend"
+    page.ask(session, "layers.fields", {"layer": "Bend", "fields": {"angle": 0.3}})
+    assert session.scene.stack["Bend"].deformer.deformer.angle == 0.3

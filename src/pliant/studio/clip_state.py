@@ -9,6 +9,9 @@ from weakref import WeakKeyDictionary
 import numpy as np
 from numpy.typing import NDArray
 
+from pliant.errors import PliantError
+from pliant.scene.keyed import tool_of
+from pliant.scene.kinds import kind_of
 from pliant.scene.track import Key, Track
 from pliant.studio.posing import clip_of, keyable
 
@@ -18,6 +21,7 @@ if TYPE_CHECKING:
 
 Floats = NDArray[np.float64]
 
+_DEGREE = 180 / np.pi
 _STEPS = 24  # of a curve between two keys
 _MOST_DRAWN = 4000  # points of a curve
 _known: WeakKeyDictionary[Track, tuple[float, dict[str, Any]]] = WeakKeyDictionary()  # tracks never change
@@ -45,22 +49,31 @@ def clip_state(scene: Scene, time: float, recording: bool) -> dict[str, Any]:
 def track_state(clip: Clip, track: Track) -> dict[str, Any]:
     """A track: its keys, and its curves as heights at common times.
 
-    Of one number there is one curve, of a vector one a component. What holds more numbers has one that tells how far
-    it has come: the length of the way through the keys.
+    Values are as people see them: angles in degrees. Of one number there is one curve, of a vector one a component.
+    What holds more numbers has one that tells how far it has come: the length of the way through the keys.
     """
     known = _known.get(track)
     if known is None or known[0] != clip.duration:
-        known = _known[track] = clip.duration, _described(track, clip.duration)
+        known = _known[track] = clip.duration, _described(track, clip.duration, unit_of(clip, track))
     return known[1]
 
 
-def _described(track: Track, duration: float) -> dict[str, Any]:
+def unit_of(clip: Clip, track: Track) -> float:
+    """By what a track's values are multiplied for people: they see angles in degrees."""
+    try:
+        fields = kind_of(tool_of(clip.stack[track.layer].deformer)).fields
+    except PliantError:
+        return 1.0
+    return _DEGREE if any(field.name == track.field and field.type == "angle" for field in fields) else 1.0
+
+
+def _described(track: Track, duration: float, unit: float) -> dict[str, Any]:
     values = np.stack([np.asarray(key.value, np.float64).reshape(-1) for key in track.keys])
     plain = values.shape[1] <= 3
     heights = values if plain else _ways(values)
     keys = [
         {"time": key.time, "value": height, "easing": key.easing}
-        for key, height in zip(track.keys, heights.tolist(), strict=True)
+        for key, height in zip(track.keys, (unit * heights).tolist(), strict=True)
     ]
     times = _times(track.keys, duration)
     drawn = track if plain else _way_track(track, heights)
@@ -69,9 +82,10 @@ def _described(track: Track, duration: float) -> dict[str, Any]:
         "layer": track.layer,
         "field": track.field,
         "plain": plain,
+        "unit": "°" if unit != 1.0 else "",
         "keys": keys,
         "times": np.round(times, 6).tolist(),
-        "curves": np.round(curve.T, 9).tolist(),
+        "curves": np.round(unit * curve.T, 9).tolist(),
     }
 
 

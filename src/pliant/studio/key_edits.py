@@ -15,6 +15,7 @@ from pliant.errors import InvalidParameter
 from pliant.scene.clip import Clip
 from pliant.scene.easing import Easing
 from pliant.scene.track import Key, Track
+from pliant.studio.clip_state import unit_of
 
 Name = tuple[str, str, float]
 
@@ -57,12 +58,16 @@ def key_at(clip: Clip, name: Name) -> Key:
 
 
 def moved_keys(clip: Clip, names: list[Name], by: float, rise: float = 0.0, component: int = 0) -> Clip:
-    """The clip with keys at other times, and with other values in one component.
+    """The clip with keys at other times, and with other values in one component, as people see them.
 
     They keep their distances: none comes before the beginning. One that arrives where another stands takes its place.
     """
     by = max(by, -min(time for _, _, time in names))
-    keys = {name: _risen(key_at(clip, name), rise, component) for name in names}
+    keys = {}
+    for name in names:
+        key = key_at(clip, name)
+        unit = next(unit_of(clip, track) for track in clip.tracks if (track.layer, track.field) == name[:2])
+        keys[name] = _risen(key, rise / unit, component)
     rest = without_keys(clip, names)
     return _with_keys(clip, rest, [(name, replace(key, time=name[2] + by)) for name, key in keys.items()])
 

@@ -6,11 +6,12 @@ import dataclasses
 from collections.abc import Iterable, Mapping
 from typing import Any
 
-from pliant.deformer import Deformer
+from pliant.deformer import Deformer, SpaceDeformer
 from pliant.errors import InvalidParameter, PliantError
 from pliant.scene.kinds import kind_of
 from pliant.scene.layer import Layer
 from pliant.scene.stack import Stack
+from pliant.space.placed import Placed
 
 
 def free_name(name: str, taken: Iterable[str]) -> str:
@@ -30,13 +31,17 @@ def with_layer(stack: Stack, name: str, deformer: Deformer) -> tuple[Stack, str]
 
 
 def with_fields(deformer: Deformer, fields: Mapping[str, Any]) -> Deformer:
-    """A deformer with some of its fields exchanged.
+    """A deformer with some of its fields exchanged; of one that is placed, the fields of the tool.
 
     Raises
     ------
     InvalidParameter
         A field that it has not, or a value that it does not take.
     """
+    if isinstance(deformer, Placed):
+        tool = with_fields(deformer.deformer, fields)
+        assert isinstance(tool, SpaceDeformer)
+        return Placed(tool, deformer.frame)
     known = {field.name: field for field in kind_of(deformer).fields}
     for name in fields:
         if name not in known:

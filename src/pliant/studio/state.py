@@ -10,6 +10,7 @@ import numpy as np
 from pliant.deformer import Deformer, LinearBinding
 from pliant.errors import PliantError
 from pliant.scene.fields import Field
+from pliant.scene.keyed import tool_of
 from pliant.scene.kinds import kind_of
 from pliant.scene.layer import Layer
 from pliant.scene.scene import Scene
@@ -68,8 +69,9 @@ def _layer(layer: Layer) -> dict[str, Any]:
     deformer = layer.deformer
     by_points = layer.in_space and deformer.controls.ndim > 1 and deformer.controls.shape[-1] == 3
     try:
-        kind = kind_of(deformer)
-        name, fields = kind.name, [_field(field, deformer) for field in kind.fields]
+        tool = tool_of(deformer)
+        kind = kind_of(tool)
+        name, fields = kind.name, [_field(field, tool) for field in kind.fields]
     except PliantError:
         name, fields = type(deformer).__name__, []
     return {

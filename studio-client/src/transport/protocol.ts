@@ -83,6 +83,8 @@ export interface TrackState {
   field: string;
   /** Whether the values themselves are told, and can be set. */
   plain: boolean;
+  /** What stands after its values, which are as people see them. */
+  unit: string;
   keys: ClipKey[];
   /** The curves between the keys, one a component: their heights at these times. */
   times: number[];

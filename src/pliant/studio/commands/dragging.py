@@ -16,6 +16,7 @@ from pliant.space.direct import pull as pulled
 from pliant.studio.dragging import Dragging, begin, cancel, commit, ongoing
 from pliant.studio.frames import Frame
 from pliant.studio.layering import with_fields
+from pliant.studio.placements import to_frame
 from pliant.studio.request import Client, Request, command
 from pliant.studio.session import Session
 
@@ -25,6 +26,7 @@ class PointsDrag(Dragging):
 
     def __init__(self, session: Session, client: Client, layer: str) -> None:
         super().__init__(session, client, layer, "drag")
+        self._deformer = session.required.stack[layer].deformer
         self._drag = session.shown.binding.drag_layer(layer)
         self._controls = self._drag.controls
         self._locked = set(session.locked_points(layer).tolist())
@@ -35,7 +37,7 @@ class PointsDrag(Dragging):
         if len(index) != len(positions):
             raise InvalidParameter(f"{len(index)} control points have {len(positions)} positions")
         free = [at for at, point in enumerate(index.tolist()) if point not in self._locked]
-        flat[index[free]] = positions[free]
+        flat[index[free]] = to_frame(self._deformer, positions[free])
         changed = np.stack(np.unravel_index(index[free], self._controls.shape[:-1]), axis=-1)
         touched = self._drag.update(self._controls, changed)
         return touched, self._drag.points, {}

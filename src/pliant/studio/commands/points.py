@@ -12,6 +12,7 @@ from pliant.errors import InvalidParameter
 from pliant.rendering.palette import SEQUENTIAL, color_table
 from pliant.studio.frames import Frame
 from pliant.studio.lattices import axes_of, links, places_around
+from pliant.studio.placements import to_frame, to_world
 from pliant.studio.request import Request, command
 from pliant.studio.session import Session
 
@@ -22,8 +23,8 @@ def get(session: Session, request: Request) -> Frame:
     name = request.text("layer")
     deformer = _by_points(session, name)
     arrays: dict[str, NDArray[Any]] = {
-        "rest": deformer.rest.reshape(-1),
-        "points": deformer.controls.reshape(-1),
+        "rest": to_world(deformer, deformer.rest.reshape(-1, 3)).reshape(-1),
+        "points": to_world(deformer, deformer.controls.reshape(-1, 3)).reshape(-1),
         "links": links(deformer).reshape(-1),
         "axes": axes_of(deformer).reshape(-1),
         "locked": session.locked_points(name),
@@ -57,7 +58,7 @@ def put(session: Session, request: Request) -> None:
     if len(index) != len(positions):
         raise InvalidParameter(f"{len(index)} control points have {len(positions)} positions")
     _refuse_locked(session, name, index.tolist())
-    flat[index] = positions
+    flat[index] = to_frame(deformer, positions)
     _commit(session, name, deformer, controls, "points")
 
 

@@ -30,6 +30,13 @@ export const TIME = {
   timePin: ["Keep the timeline open in other modes", "在其他模式中保持时间线打开"],
   timeHeight: ["Height of the timeline", "时间线高度"],
   timeFilm: ["Export", "导出"],
+  timePlace: ["Place the tool: each place is a key at the playhead", "移动工具：每次放置在播放头处成为关键帧"],
+  timeThrough: ["Move the object through it", "让物体穿过它"],
+  timeOnion: ["Onion skin", "洋葱皮"],
+  timeGhosts: ["Ghosts on each side", "每侧残影数"],
+  timeEvery: ["every", "间隔"],
+  timeFrames: ["frames", "帧"],
+  timeAtKeys: ["keys", "关键帧"],
   timeSetKey: ["Set a key", "设置关键帧"],
   timeKeyAll: ["All that have keys", "所有已有关键帧的值"],
   timeEmpty: [
@@ -63,6 +70,7 @@ export const TIME = {
   easing_bounce: ["Bounce", "弹跳"],
   easing_elastic: ["Elastic", "弹性"],
   easing_bezier: ["Own curve", "自定义曲线"],
+  did_place: ["Place", "放置"],
   did_keys: ["Set keys of", "设置关键帧"],
   did_keysRemoved: ["Remove keys of", "删除关键帧"],
   did_easing: ["Easing of", "缓动"],
@@ -81,6 +89,11 @@ export const TIME = {
   tourTimeKeysText: [
     "Drag keys along time, several with Shift or a rectangle. A double click adds one; D copies to the playhead; Alt leaves the frames.",
     "拖动关键帧改变时间，按 Shift 或框选多个。双击添加；D 复制到播放头；按住 Alt 不吸附到帧。",
+  ],
+  tourTimePlace: ["Tools that move", "移动的工具"],
+  tourTimePlaceText: [
+    "Move a deformer over the object, or the object through it, with the gizmo; its way is drawn. Onion skin shows other moments.",
+    "用操纵器让变形器扫过物体，或让物体穿过变形器，并显示其路径。洋葱皮可显示其他时刻的形状。",
   ],
   tourTimeCurves: ["Curves", "曲线"],
   tourTimeCurvesText: [

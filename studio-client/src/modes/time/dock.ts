@@ -1,6 +1,6 @@
 // The timeline under the canvas: bar, ruler, names and keys, or curves; as high as somebody drags it.
 
-import { h } from "../../core/dom";
+import { h, replace } from "../../core/dom";
 import { t } from "../../core/strings";
 import type { TrackState } from "../../transport/protocol";
 import type { ClipModel } from "./clip_model";
@@ -8,7 +8,10 @@ import { CurveArea } from "./curve_area";
 import { follow, KeyArea } from "./key_area";
 import { Ruler } from "./ruler";
 import { rowsOf, TrackList } from "./track_list";
-import { TransportBar, type BarActions, type View } from "./transport_bar";
+import { segments } from "../../panels/controls";
+import { TransportBar, type BarActions } from "./transport_bar";
+
+type View = "keys" | "curves";
 
 const [LEAST, MOST] = [150, 560]; // pixels
 
@@ -22,6 +25,7 @@ export class Dock {
   private readonly line = h("div", { class: "playhead-line" });
   private readonly area = h("div", { class: "time-area" });
   private readonly scroller = h("div", { class: "dock-scroll" });
+  private readonly corner = h("div", { class: "dock-corner" });
   private readonly empty = h("p", { class: "dock-empty" });
   private view: View = "keys";
   private chosen: { layer: string; field: string } | null = null;
@@ -30,13 +34,13 @@ export class Dock {
 
   constructor(
     private readonly model: ClipModel,
-    actions: Omit<BarActions, "view">,
+    actions: BarActions,
   ) {
     const pin = (on: boolean): void => {
       this.pinned = on;
       actions.pin(on);
     };
-    this.bar = new TransportBar(model, { ...actions, pin, view: (view) => this.setView(view) });
+    this.bar = new TransportBar(model, { ...actions, pin });
     this.ruler = new Ruler(model);
     this.list = new TrackList(model);
     this.keys = new KeyArea(model);
@@ -48,11 +52,6 @@ export class Dock {
     new ResizeObserver(() => this.request()).observe(this.area);
   }
 
-  setView(view: View): void {
-    this.view = view;
-    this.request();
-  }
-
   /** Draw it at the next opportunity. */
   request(): void {
     if (this.asked) return;
@@ -61,6 +60,16 @@ export class Dock {
       this.asked = false;
       if (this.element.isConnected) this.draw();
     });
+  }
+
+  /** The choice between keys and curves, in the language of the page. */
+  private showViews(): void {
+    if (this.corner.textContent === t("timeKeys") + t("timeCurves")) return;
+    const show = (view: View): void => {
+      this.view = view;
+      this.request();
+    };
+    replace(this.corner, segments<View>([["keys", t("timeKeys")], ["curves", t("timeCurves")]], this.view, show));
   }
 
   private build(): void {
@@ -76,7 +85,7 @@ export class Dock {
     this.element.append(
       grip,
       this.bar.element,
-      h("div", { class: "dock-body" }, h("div", { class: "dock-corner" }), this.ruler.element as unknown as Node, this.scroller, this.line, this.empty),
+      h("div", { class: "dock-body" }, this.corner, this.ruler.element as unknown as Node, this.scroller, this.line, this.empty),
     );
     for (const element of [this.ruler.element, this.area]) {
       element.addEventListener("wheel", (event) => this.wheel(event as WheelEvent), { passive: false });
@@ -88,7 +97,8 @@ export class Dock {
     const rows = rowsOf(model);
     const chosen = this.track();
     model.span.width = this.area.clientWidth;
-    this.bar.show(this.view, this.pinned, model.studio.settings.now.language);
+    this.bar.show(this.pinned, model.studio.settings.now.language);
+    this.showViews();
     this.ruler.show();
     this.list.show(rows, this.view === "curves" ? chosen : null, (track) => this.choose(track));
     this.keys.element.toggleAttribute("hidden", this.view !== "keys");

@@ -6,7 +6,11 @@ import type { Studio } from "../../studio";
 import { registerMode, type Mode, type Probe } from "../mode";
 import { ClipModel } from "./clip_model";
 import { Dock } from "./dock";
+import { Ghosts } from "./ghosts";
 import { KeyPanel } from "./key_panel";
+import { Placer } from "./placer";
+import { TimeTools } from "./tools";
+import type { Tool } from "../../view/gizmo";
 
 class TimeMode implements Mode {
   readonly id = "time";
@@ -17,10 +21,16 @@ class TimeMode implements Mode {
   private readonly model: ClipModel;
   private readonly keys: KeyPanel;
   private readonly timeline: Dock;
+  private readonly ghosts: Ghosts;
+  private readonly placer: Placer;
+  private readonly tools: TimeTools;
 
   constructor(studio: Studio) {
     this.model = new ClipModel(studio);
     this.keys = new KeyPanel(this.model);
+    this.ghosts = new Ghosts(this.model);
+    this.placer = new Placer(studio);
+    this.tools = new TimeTools(this.model, this.placer, this.ghosts);
     this.timeline = new Dock(this.model, {
       templates: () => undefined,
       film: () => openExport(studio),
@@ -30,10 +40,21 @@ class TimeMode implements Mode {
 
   enter(): void {
     this.timeline.request();
+    this.ghosts.start();
   }
 
   leave(): void {
     this.model.player.pause();
+    this.ghosts.stop();
+    this.placer.stop();
+  }
+
+  toolbar(): HTMLElement {
+    return this.tools.bar();
+  }
+
+  hover(): void {
+    this.placer.useCamera();
   }
 
   dock(): HTMLElement {
@@ -71,8 +92,14 @@ class TimeMode implements Mode {
       case "k":
         this.keys.setKeys();
         return true;
+      case "g":
+      case "r":
+      case "s":
+        if (!this.placer.on) return false;
+        this.tools.setTool({ g: "translate", r: "rotate", s: "scale" }[event.key] as Tool);
+        return true;
       case "Escape":
-        model.selection.choose([]);
+        if (!this.placer.cancel()) model.selection.choose([]);
         return true;
       default:
         return false;
@@ -84,7 +111,8 @@ class TimeMode implements Mode {
       { at: ".ruler", title: "tourTimeScrub", text: "tourTimeScrubText" },
       { at: ".transport .record", title: "tourTimeRecord", text: "tourTimeRecordText" },
       { at: ".time-area", title: "tourTimeKeys", text: "tourTimeKeysText" },
-      { at: ".transport .segments", title: "tourTimeCurves", text: "tourTimeCurvesText" },
+      { at: ".stage-top .toolbar", title: "tourTimePlace", text: "tourTimePlaceText" },
+      { at: ".dock-corner", title: "tourTimeCurves", text: "tourTimeCurvesText" },
     ];
   }
 
@@ -95,6 +123,8 @@ class TimeMode implements Mode {
       playing: () => player.playing.value,
       kept: () => player.kept.value,
       selected: () => selection.list,
+      ghosts: () => this.ghosts.count,
+      gizmo: () => this.placer.screen,
       x: (time: number) => this.model.span.x(time),
     } as Probe;
   }

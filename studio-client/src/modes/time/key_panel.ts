@@ -70,7 +70,7 @@ export class KeyPanel {
     const fields = key.value.map((value, component) => {
       const label = one ? fieldTitle(track.field) : `${fieldTitle(track.field)} ${COMPONENTS[component]!}`;
       const axis = one ? {} : { axis: COMPONENTS[component]! };
-      return numberField(value, (to) => this.change({ rise: to - value, component }, 0), { label: `${t("timeValue")}: ${label}`, step: 0.1, ...axis });
+      return numberField(value, (to) => this.change({ rise: to - value, component }, 0), { label: `${t("timeValue")}: ${label}`, step: track.unit ? 5 : 0.1, unit: track.unit, ...axis });
     });
     return one ? row(t("timeValue"), fields[0]!) : h("div", null, h("span", { class: "field-label" }, t("timeValue")), h("div", { class: "vector" }, ...fields));
   }

@@ -118,12 +118,20 @@ export class Player {
     else this.latest.push(time);
   }
 
-  private async fetch(time: number): Promise<void> {
+  /** The shape at a moment, as it is sent: kept, or asked for. */
+  async frame(time: number): Promise<Frame | null> {
+    const known = this.frames.get(this.onFrame(time) ?? -1);
+    if (known) return known;
     const { state } = this;
     const answer = await this.studio.ask("time.frame", { time });
-    if (!answer || state !== this.state) return;
+    if (!answer || state !== this.state) return null;
     this.keep(time, answer);
-    this.draw(answer);
+    return answer;
+  }
+
+  private async fetch(time: number): Promise<void> {
+    const answer = await this.frame(time);
+    if (answer) this.draw(answer);
   }
 
   private draw(frame: Frame): void {

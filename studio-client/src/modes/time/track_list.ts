@@ -73,13 +73,13 @@ export class TrackList {
 }
 
 /** What a track of one number says at a time: as its drawn curve does. */
-function valueAt({ plain, curves, times }: TrackState, time: number): string {
+function valueAt({ plain, curves, times, unit }: TrackState, time: number): string {
   if (!plain || curves.length !== 1) return "";
   const curve = curves[0]!;
   const after = times.findIndex((each) => each >= time);
-  if (after <= 0) return shown(curve[after === 0 ? 0 : curve.length - 1]!);
+  if (after <= 0) return shown(curve[after === 0 ? 0 : curve.length - 1]!) + unit;
   const [a, b] = [times[after - 1]!, times[after]!];
-  return shown(curve[after - 1]! + ((time - a) / (b - a || 1)) * (curve[after]! - curve[after - 1]!));
+  return shown(curve[after - 1]! + ((time - a) / (b - a || 1)) * (curve[after]! - curve[after - 1]!)) + unit;
 }
 
 const shown = (value: number): string => String(Number(value.toPrecision(4)));

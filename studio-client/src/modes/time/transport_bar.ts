@@ -2,14 +2,11 @@
 
 import { h, replace } from "../../core/dom";
 import { t } from "../../core/strings";
-import { button, iconButton, numberField, press, segments, select, setNumber, toggle } from "../../panels/controls";
+import { button, iconButton, numberField, press, select, setNumber, toggle } from "../../panels/controls";
 import { separator } from "../points_tools";
 import type { ClipModel } from "./clip_model";
 
-export type View = "keys" | "curves";
-
 export interface BarActions {
-  view: (view: View) => void;
   templates: () => void;
   film: () => void;
   pin: (on: boolean) => void;
@@ -35,12 +32,12 @@ export class TransportBar {
   }
 
   /** Build it for the clip as it is, unless it is shown so already. */
-  show(view: View, pinned: boolean, language: string): void {
+  show(pinned: boolean, language: string): void {
     const { model } = this;
     const { clip, player } = model;
     if (!clip) return;
     const { duration, fps, ending, recording } = clip;
-    const key = JSON.stringify([duration, fps, ending, recording, view, pinned, language]);
+    const key = JSON.stringify([duration, fps, ending, recording, pinned, language]);
     if (key === this.shown) return this.place();
     this.shown = key;
     const set = (values: Record<string, unknown>): void => void model.studio.ask("time.clip", values);
@@ -69,7 +66,6 @@ export class TransportBar {
       h("span", { class: "spacer" }),
       button(t("templates"), this.actions.templates, { icon: "template", kind: "quiet" }),
       button(t("timeFilm"), this.actions.film, { icon: "film", kind: "quiet" }),
-      segments<View>([["keys", t("timeKeys")], ["curves", t("timeCurves")]], view, this.actions.view),
       toggle("pin", t("timePin"), pinned, this.actions.pin),
     );
     this.showPlaying(player.playing.value);
