@@ -6,5 +6,6 @@ import "./pull";
 import "./surface";
 import "./axial";
 import "./sites";
+import "./cage";
 import "./model";
 import "./time";

@@ -143,8 +143,8 @@ export class PointsMode implements Mode {
       if (Math.hypot(pointer.x - grab.from.x, pointer.y - grab.from.y) < SLOP || !this.points?.selected.size) return;
       this.begin();
     }
-    const to = this.onPlane(pointer, grab);
-    if (to) this.step((motion) => motion.translate(this.tools.restrained(to.sub(grab.at))));
+    const [from, to] = [this.onPlane(grab.from, grab), this.onPlane(pointer, grab)];
+    if (from && to) this.step((motion) => motion.translate(this.tools.restrained(to.sub(from))));
   }
 
   up(pointer: Pointer): void {
@@ -240,6 +240,9 @@ export class PointsMode implements Mode {
     this.side.show(this.points);
   }
 
+  /** The control points are elsewhere. */
+  protected moved(): void {}
+
   private taken(index: number): number[] {
     const points = this.points!;
     const { take } = this.tools.now;
@@ -308,6 +311,7 @@ export class PointsMode implements Mode {
     if (!motion || !points) return;
     apply(motion);
     this.handles?.move();
+    this.moved();
     this.side.follow(points);
     this.drag?.move({}, { index: motion.indices, positions: motion.positions });
     if (!this.gizmo?.dragging) this.gizmo?.place(this.pivot());
