@@ -52,7 +52,7 @@ def report(title: str, comparisons: list[Comparison], packages: list[str], notes
     lines = [
         f"## {title}",
         "",
-        f"{datetime.date.today().isoformat()}, `{command}`, {_processor()},",
+        f"{datetime.date.today().isoformat()}, `{command}`, {processor()},",
         f"Python {platform.python_version()}, {versions}.",
         "Medians (minima) in milliseconds, all candidates in turn in one process; ratio to the first of each task.",
         "",
@@ -65,7 +65,8 @@ def report(title: str, comparisons: list[Comparison], packages: list[str], notes
     return "\n".join(lines)
 
 
-def _processor() -> str:
+def processor() -> str:
+    """The machine, as far as it matters."""
     from pliant.numerics.chunks import processors
 
     try:
