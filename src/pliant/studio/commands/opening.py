@@ -13,6 +13,7 @@ from pliant.io.files import read_bytes
 from pliant.mesh import PolygonMesh
 from pliant.scene.project import load_project, save_project
 from pliant.scene.scene import Scene
+from pliant.studio.faces import photograph_of
 from pliant.studio.files import CHUNK, inside
 from pliant.studio.frames import Frame
 from pliant.studio.request import Request, command
@@ -42,12 +43,14 @@ def chunk(session: Session, request: Request) -> None:
 
 @command("open.upload")
 def open_upload(session: Session, request: Request) -> Frame:
-    """A mesh or a project among uploaded files; a transform is left for the page to ask about."""
+    """A mesh, a model or a project of uploaded files; transforms and photographs are left for the page to ask about."""
     found = session.uploads.get(request.text("upload"))
     if not found.complete:
         raise InvalidParameter("the files have not come whole: send them again")
     paths = [found.path(at) for at in range(len(found.names))]
     chosen = main_file(paths)
+    if photograph_of([chosen]):
+        return Frame({"photograph": chosen.name})
     if _is_transform(chosen):
         if session.scene is None:
             raise InvalidParameter(f"{chosen.name} is a deformation: open a mesh first, then drop it again")
@@ -135,7 +138,7 @@ def read_scene(path: Path) -> Scene:
 
 
 def main_file(paths: list[Path]) -> Path:
-    """The file that others belong to: a project, else a mesh, a shape model, a transform.
+    """The file that others belong to: a project, else a mesh, a shape model, a transform, a photograph.
 
     Raises
     ------
@@ -151,13 +154,17 @@ def main_file(paths: list[Path]) -> Path:
         for path in paths:
             if holds(path):
                 return path
+    photograph = photograph_of(paths)
+    if photograph is not None:
+        return photograph
     names = ", ".join(path.name for path in paths)
-    raise InvalidParameter(f"{names}: neither a mesh, a model, a project nor a deformation that pliant reads")
+    raise InvalidParameter(f"{names}: neither a mesh, a model, a project, a deformation nor a photograph")
 
 
 def _open(session: Session, path: Path, name: str) -> Frame:
-    scene = read_scene(path)
-    session.begin(scene, name)
+    session.begin(read_scene(path), name)
+    if holds_model(path):
+        session.broadcast(Frame({"event": "enter", "mode": "model"}))
     return Frame({"notes": []})
 
 
