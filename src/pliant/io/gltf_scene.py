@@ -14,7 +14,13 @@ Matrix = NDArray[np.float64]
 
 
 def placed_nodes(file: GltfFile) -> Iterator[tuple[int, Matrix]]:
-    """Each node of the scene that has a mesh, and the (4, 4) matrix from its own space to the world's, depth first.
+    """Each node of the scene that has a mesh, as :func:`all_nodes`."""
+    nodes = file.json.get("nodes", [])
+    return ((index, matrix) for index, matrix in all_nodes(file) if "mesh" in nodes[index])
+
+
+def all_nodes(file: GltfFile) -> Iterator[tuple[int, Matrix]]:
+    """Each node of the scene, and the (4, 4) matrix from its own space to the world's, depth first.
 
     Raises
     ------
@@ -39,8 +45,7 @@ def placed_nodes(file: GltfFile) -> Iterator[tuple[int, Matrix]]:
         matrix = above @ _local(node)
         if not np.isfinite(matrix).all():
             raise file.source.unreadable(f"node {index} has a matrix that is not finite", "export the file again")
-        if "mesh" in node:
-            yield index, matrix
+        yield index, matrix
         waiting += [(child, matrix) for child in reversed(node.get("children", []))]
 
 

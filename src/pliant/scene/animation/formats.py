@@ -54,12 +54,7 @@ def export_clip(clip: Clip, path: Path | str, *, progress: Progress | None = Non
         The disk is full, or the place is not writable.
     """
     writer = import_module(_place(Path(path))).write_clip
-    known = list(writer.__kwdefaults__ or ())
-    for name in options:
-        if name not in known:
-            raise InvalidParameter(
-                f"{Path(path).suffix} knows no option {name!r}; it knows: {', '.join(known) or 'none'}"
-            )
+    _check_options(path, writer, options)
     try:
         report: LossReport = writer(clip, Path(path), progress, **options)
     except OSError as error:  # of what a format keeps beside its file
@@ -67,7 +62,9 @@ def export_clip(clip: Clip, path: Path | str, *, progress: Progress | None = Non
     return report
 
 
-def read_sequence(path: Path | str, *, mesh: PolygonMesh | None = None, fps: float = 24.0) -> MeshSequence:
+def read_sequence(
+    path: Path | str, *, mesh: PolygonMesh | None = None, fps: float = 24.0, **options: Any
+) -> MeshSequence:
     """The motion that a file holds: a point cache, a series of meshes, or an animated scene.
 
     Parameters
@@ -77,14 +74,18 @@ def read_sequence(path: Path | str, *, mesh: PolygonMesh | None = None, fps: flo
     mesh
         The mesh that moves, whose number of points is then checked; None = none is.
     fps
-        Frames a second, for files that count frames instead of seconds.
+        Frames a second, for files that count frames instead of seconds, and where motion between keys is curved.
+    options
+        The format's own: ``animation`` of glTF, which of several, by name or number.
 
     Raises
     ------
     UnreadableFile
-        The file is damaged, holds no motion, or one of another number of points than the mesh.
+        The file is damaged, holds no such motion, or one of another number of points than the mesh.
     UnsupportedFormat
         No format of animations has that ending.
+    InvalidParameter
+        An option that the format does not know.
     """
     if not 0 < fps < float("inf"):
         raise InvalidParameter(f"fps is {fps}; it must be positive")
@@ -93,8 +94,10 @@ def read_sequence(path: Path | str, *, mesh: PolygonMesh | None = None, fps: flo
         raise UnsupportedFormat(
             f"{path}: a film holds pictures, no points; motions are read from {', '.join(endings(read=True))}"
         )
+    reader = import_module(place).read
+    _check_options(path, reader, options)
     try:
-        found: MeshSequence = import_module(place).read(Path(path), fps)
+        found: MeshSequence = reader(Path(path), fps, **options)
     except InvalidParameter as error:
         raise UnreadableFile(path, str(error), "export it again") from error
     if mesh is not None and found.count != len(mesh.points):
@@ -104,6 +107,15 @@ def read_sequence(path: Path | str, *, mesh: PolygonMesh | None = None, fps: flo
             "name the mesh that it belongs to",
         )
     return found
+
+
+def _check_options(path: Path | str, function: Any, options: dict[str, Any]) -> None:
+    known = list(function.__kwdefaults__ or ())
+    for name in options:
+        if name not in known:
+            raise InvalidParameter(
+                f"{Path(path).suffix} knows no option {name!r}; it knows: {', '.join(known) or 'none'}"
+            )
 
 
 def _place(path: Path) -> str:

@@ -24,6 +24,7 @@ from pliant.io.report import LossReport
 from pliant.mesh import PolygonMesh
 from pliant.scene.animation.gltf_morphs import MorphWriter, Share
 from pliant.scene.animation.gltf_reading import animated_points
+from pliant.scene.animation.gltf_tracks import Which
 from pliant.scene.clip import Clip, Progress
 from pliant.scene.sequence import MeshSequence
 
@@ -38,11 +39,11 @@ def write_clip(clip: Clip, path: Path, progress: Progress | None, *, name: str =
     return LossReport(path, Gltf.name, at_rest.losses, at_rest.notes)
 
 
-def read(path: Path, _fps: float) -> MeshSequence:
-    """The motion that morph targets and moving nodes make."""
+def read(path: Path, fps: float, *, animation: Which = 0) -> MeshSequence:
+    """The motion that morph targets, moving nodes and skins make."""
     source = Source(read_bytes(path), path, path.parent)
     try:
-        times, points = animated_points(opened(source))
+        times, points = animated_points(opened(source), fps, animation)
     except (KeyError, IndexError, TypeError, ValueError, AttributeError, OverflowError) as error:
         cause = f"the description contradicts itself ({type(error).__name__}: {error})"
         raise UnreadableFile(path, cause[:200], "export the file again") from error
