@@ -15,7 +15,7 @@ export interface OnionChoice {
   every: number;
 }
 
-const STRONGEST = 0.34;
+const STRONGEST = 0.27;
 
 export class Ghosts {
   readonly choice = new Signal<OnionChoice>({ on: false, count: 2, every: 4 });
