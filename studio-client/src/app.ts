@@ -56,6 +56,7 @@ export function mount(root: HTMLElement, transport: Transport, { antialias = tru
     next.enter();
   };
 
+  studio.enter = setMode;
   const tours = new Tours(studio, modes, setMode, guides);
   const actions = new Actions(studio, opening, tours);
 
@@ -91,6 +92,7 @@ export function mount(root: HTMLElement, transport: Transport, { antialias = tru
   studio.session.catalogue.onChange(() => field.rebuild());
 
   studio.session.on("failure", ({ head }) => studio.toasts.error(head["message"] as string));
+  studio.session.on("enter", ({ head }) => setMode(head["mode"] as string)); // what was opened has a mode of its own
   loadMeshes(studio);
   listen(studio);
   const stopKeys = listenKeys(studio, { actions, compare, modes, setMode });

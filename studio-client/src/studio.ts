@@ -50,6 +50,8 @@ export class Studio {
   readonly root: HTMLElement;
   /** Open files that were chosen, as if they had been dropped; set by the page. */
   take: (files: File[]) => void = () => undefined;
+  /** Enter a mode; set by the page. */
+  enter: (mode: string) => void = () => undefined;
 
   constructor(transport: Transport, options: StudioOptions) {
     this.root = options.root;

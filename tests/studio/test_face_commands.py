@@ -1,6 +1,7 @@
 """Faces in the studio without a browser: a photograph becomes the scene, and sliders make the library's caricature."""
 
 import time
+from contextlib import contextmanager
 
 import numpy as np
 import pytest
@@ -38,7 +39,7 @@ def sent(session, page, image, folder, name="portrait.png"):
 @pytest.fixture(scope="module")
 def dropped(tmp_path_factory):
     """A session on the face of a dropped photograph."""
-    for session, page in joined(pl.Scene(ball()), "ball"):
+    with contextmanager(joined)(pl.Scene(ball()), "ball") as (session, page):
         upload = sent(session, page, skimage.data.astronaut(), tmp_path_factory.mktemp("photographs"))
         assert page.ask(session, "open.upload", {"upload": upload}).head["photograph"] == "portrait.png"
         page.ask(session, "face.open", {"upload": upload})

@@ -8,4 +8,5 @@ import "./axial";
 import "./sites";
 import "./cage";
 import "./model";
+import "./face";
 import "./time";

@@ -19,7 +19,7 @@ export class Opening {
     pickFiles((files) => void this.take(files));
   }
 
-  /** Meshes and projects are opened; transforms are imported, where there is a mesh. */
+  /** Meshes, models and projects are opened; of photographs the face; transforms are imported, where there is a mesh. */
   async take(files: File[]): Promise<void> {
     if (!files.length) return;
     const bar = this.progress.begin(`${t("loading")} ${files[0]!.name}`);
@@ -27,7 +27,8 @@ export class Opening {
       const name = await upload(this.studio, files, (part) => bar.show(0.9 * part));
       if (name === null) return;
       const answer = await this.studio.ask("open.upload", { upload: name });
-      if (answer?.head["transform"]) importTransform(this.studio, name, answer.head["transform"] as string);
+      if (answer?.head["photograph"]) await this.studio.ask("face.open", { upload: name });
+      else if (answer?.head["transform"]) importTransform(this.studio, name, answer.head["transform"] as string);
       else if (answer) this.opened(answer.head["notes"] as string[]);
     } finally {
       bar.end();

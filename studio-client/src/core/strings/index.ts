@@ -5,6 +5,7 @@ import type { Language } from "../settings";
 import { AXIAL } from "./axial";
 import { CAGE } from "./cage";
 import { COMMON } from "./common";
+import { FACE } from "./face";
 import { MODEL } from "./model";
 import { EXTENDED } from "./extended";
 import { POINTS } from "./points";
@@ -14,7 +15,7 @@ import { TIME } from "./time";
 import { SURFACE } from "./surface";
 import { TOUR } from "./tour";
 
-const TABLE = { ...COMMON, ...MODEL, ...AXIAL, ...CAGE, ...EXTENDED, ...POINTS, ...SITES, ...TIME, ...SURFACE, ...TOUR } as const satisfies Strings;
+const TABLE = { ...COMMON, ...FACE, ...MODEL, ...AXIAL, ...CAGE, ...EXTENDED, ...POINTS, ...SITES, ...TIME, ...SURFACE, ...TOUR } as const satisfies Strings;
 
 export type StringKey = keyof typeof TABLE;
 
