@@ -7,6 +7,8 @@ closest points are found anew in each.
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.sparse import csc_array, csr_array, diags_array, eye_array, kron
@@ -21,10 +23,12 @@ from pliant.surface.constraints import mesh_of
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
+Progress = Callable[[int, int], None]
 
 _SMOOTHNESS, _IDENTITY = 1.0, 1e-3
 _CLOSENESS = (1.0, 17.0, 292.0, 5000.0)
 _STAY = 1e-7  # keeps what nothing else determines
+STEPS = len(_CLOSENESS) + 2  # of finding a correspondence: one without closest points, and the pairing
 
 
 def checked_markers(markers: ArrayLike, source: PolygonMesh, target: PolygonMesh) -> Integers:
@@ -51,7 +55,9 @@ def checked_markers(markers: ArrayLike, source: PolygonMesh, target: PolygonMesh
     return pairs.astype(np.int64)
 
 
-def find_correspondence(source: PolygonMesh, target: PolygonMesh, markers: ArrayLike) -> Integers:
+def find_correspondence(
+    source: PolygonMesh, target: PolygonMesh, markers: ArrayLike, progress: Progress | None = None
+) -> Integers:
     """Pairs of triangles that belong together.
 
     Parameters
@@ -60,6 +66,8 @@ def find_correspondence(source: PolygonMesh, target: PolygonMesh, markers: Array
         Meshes of any connectivity, in similar poses.
     markers
         (k, 2) pairs of vertices, source and target: a dozen or more, at what the shapes have in common.
+    progress
+        Called with the number of steps done, and of all. What it raises ends the work.
 
     Returns
     -------
@@ -67,16 +75,18 @@ def find_correspondence(source: PolygonMesh, target: PolygonMesh, markers: Array
         (c, 2) source and target triangles, sorted by target; every target triangle occurs.
     """
     pairs = checked_markers(markers, mesh_of(source, "transfer"), mesh_of(target, "transfer"))
-    deformed = fitted(source, target, pairs)
+    deformed = fitted(source, target, pairs, progress)
     forward = _nearest(deformed, source.triangles, target.points, target.triangles)
     back = _nearest(target.points, target.triangles, deformed, source.triangles)
     one = np.column_stack([np.arange(len(forward)), forward])[forward >= 0]
     two = np.column_stack([back, np.arange(len(back))])
     both = np.unique(np.vstack([one, two]), axis=0)
+    if progress is not None:
+        progress(STEPS, STEPS)
     return both[np.argsort(both[:, 1], kind="stable")]
 
 
-def fitted(source: PolygonMesh, target: PolygonMesh, markers: Integers) -> Points:
+def fitted(source: PolygonMesh, target: PolygonMesh, markers: Integers, progress: Progress | None = None) -> Points:
     """(n, 3) the source's vertices, deformed into the target's shape."""
     unit = target.diagonal or 1.0
     start, rest = _aligned(source.points, target.points, markers) / unit, target.points / unit
@@ -90,7 +100,7 @@ def fitted(source: PolygonMesh, target: PolygonMesh, markers: Integers) -> Point
     begin = np.vstack([start, np.zeros((len(triangles), 3))])
     free = np.setdiff1d(np.arange(system.shape[0]), markers[:, 0])
     surface, result, factor = FacingTriangles(rest, target.triangles), begin, None
-    for weight in (0.0, *_CLOSENESS):
+    for done, weight in enumerate((0.0, *_CLOSENESS), 1):
         pull, goal = np.zeros(system.shape[0]), np.zeros_like(begin)
         if weight:
             goal[:count], triangle = surface.closest(result[:count], _normals(source, result[:count]))
@@ -103,6 +113,8 @@ def fitted(source: PolygonMesh, target: PolygonMesh, markers: Integers) -> Point
         inner = csc_array(matrix[free][:, free])
         factor = Cholesky(inner) if factor is None else factor.refactored(inner)
         result[free] = factor.solve(wanted)
+        if progress is not None:
+            progress(done, STEPS)
     return result[:count] * unit
 
 

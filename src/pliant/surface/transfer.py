@@ -16,7 +16,7 @@ from pliant.numerics.graphs import components, edge_graph
 from pliant.numerics.ragged import Ragged, frozen
 from pliant.numerics.sparse_cholesky import Cholesky
 from pliant.surface.constraints import mesh_of
-from pliant.surface.correspondence import checked_markers, find_correspondence
+from pliant.surface.correspondence import Progress, checked_markers, find_correspondence
 from pliant.surface.shading import shading_normals
 
 Floats = NDArray[np.float64]
@@ -41,6 +41,8 @@ class DeformationTransfer:
     correspondence
         (c, 2) pairs of triangles found earlier, :attr:`correspondence` of another transfer between the same meshes;
         None = find them.
+    progress
+        While they are found: called with the number of steps done, and of all. What it raises ends the work.
 
     Raises
     ------
@@ -57,11 +59,12 @@ class DeformationTransfer:
         markers: ArrayLike,
         *,
         correspondence: ArrayLike | None = None,
+        progress: Progress | None = None,
     ) -> None:
         self.source, self.target = mesh_of(source, "transfer"), mesh_of(target, "transfer")
         self.markers = frozen(checked_markers(markers, source, target), np.int64)
         pairs = (
-            find_correspondence(source, target, self.markers)
+            find_correspondence(source, target, self.markers, progress)
             if correspondence is None
             else _checked_pairs(correspondence, source, target)
         )

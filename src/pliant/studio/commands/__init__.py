@@ -20,6 +20,7 @@ from pliant.studio.commands import (
     time,
     transforms,
 )
+    transfer,
 
 __all__ = [
     "axial",
@@ -41,3 +42,4 @@ __all__ = [
     "time",
     "transforms",
 ]
+    "transfer",
