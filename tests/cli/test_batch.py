@@ -34,6 +34,16 @@ def test_a_pattern_of_files(run, cohort):
     assert again.stderr.count("done before") == 4
 
 
+def test_a_project_for_other_meshes(run, cohort):
+    mesh = pl.read(cohort / "vase0.ply")
+    stack = pl.Stack([pl.Layer("twist", pl.Twist.around(mesh, axis="z", angle=0.5))])
+    pl.save_project(pl.Scene(mesh, stack), cohort / "twisted.pliant")
+    words = ("batch", cohort / "vase?.ply", "-r", cohort / "twisted.pliant", "-o", f"{cohort}/out/{{stem}}.ply")
+    assert run(*words, "--workers", 0).exit_code == 0
+    other = pl.read(cohort / "vase3.ply")
+    assert np.allclose(pl.read(cohort / "out" / "vase3.ply").points, stack(other).points, atol=1e-4)
+
+
 def test_failures_stop_nothing(run, cohort):
     (cohort / "vase2.ply").write_text("ply\nbroken")
     result = run("batch", cohort / "vase*.ply", "-r", "twist-up", "-o", f"{cohort}/out/{{stem}}.ply", "--workers", 0)

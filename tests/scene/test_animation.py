@@ -13,8 +13,12 @@ from scene_shapes import MESH, mixed_stack
 
 import pliant as pl
 from pliant.errors import InvalidParameter, MissingExtra, UnreadableFile, UnsupportedFormat, UnwritableFile
-from pliant.mesh import FaceLabels, Material
+from pliant.io.format import Source
+from pliant.io.gltf_file import opened
+from pliant.mesh import CornerValues, FaceLabels, Material
+from pliant.numerics.triangulation import polygon_normals
 from pliant.scene.animation.formats import endings
+from pliant.scene.animation.gltf_reading import dense
 
 VALIDATOR = Path(__file__).parent / "validator"
 
@@ -90,6 +94,25 @@ def test_gltf_is_valid_and_keeps_textures_and_materials(ending, box_mesh, tmp_pa
     assert file.accessors[first].sparse is not None  # only the lid moves
     again = pl.read_sequence(tmp_path / f"clip{ending}")
     assert np.abs(np.asarray(again.points)[:, : len(mesh.points)] - clip.sequence().points).max() < 1e-6
+
+
+def test_normals_follow_in_gltf(box_mesh, tmp_path):
+    """At a frame the file's normals are those of the deformed mesh, corner by corner."""
+    areas = polygon_normals(box_mesh.points, box_mesh.faces)
+    flat = areas / np.linalg.norm(areas, axis=1, keepdims=True)
+    mesh = box_mesh.replace(normals=CornerValues(flat, box_mesh.faces.row_of))
+    clip = pl.Clip(mesh, pl.Stack([pl.Layer("twist", pl.Twist.around(mesh))]), duration=0.5, fps=8)
+    clip = clip.key("twist", 0.0, {"angle": 0.0}).key("twist", 0.5, {"angle": 1.0})
+    clip.export(tmp_path / "clip.glb")
+    assert_valid(tmp_path / "clip.glb")
+    file = opened(Source((tmp_path / "clip.glb").read_bytes(), tmp_path / "clip.glb", tmp_path))
+    primitive = file.json["meshes"][0]["primitives"][0]
+    rest, turned = file.values(primitive["attributes"]["NORMAL"]), dense(file, primitive["targets"][-1]["NORMAL"])
+    corners = file.values(primitive["indices"])[:, 0].astype(int)
+    end = clip.sample(0.5)
+    expected = end.normals.values[end.normals.indices][end.triangle_corners.reshape(-1)]
+    np.testing.assert_allclose((rest + turned)[corners], expected, atol=1e-6)
+    assert np.abs(turned).max() > 0.3
 
 
 def test_at_most_two_targets_have_a_weight(moving, tmp_path):

@@ -16,6 +16,7 @@ from pliant.cli.session import Session
 
 if TYPE_CHECKING:
     from pliant.scene.recipe import Recipe
+    from pliant.scene.stack import Stack
 
 
 def batch(
@@ -23,7 +24,7 @@ def batch(
         list[str],
         typer.Argument(metavar="MESH...", show_default=False, help="Files, or patterns such as 'cohort/*.ply'."),
     ],
-    recipe: Annotated[str, typer.Option("--recipe", "-r", metavar="RECIPE", help="A .toml, or a template's name.")],
+    recipe: Annotated[str, typer.Option("--recipe", "-r", metavar="RECIPE", help="A .toml, a .pliant, or a template's name.")],
     output: Annotated[
         str,
         typer.Option(
@@ -58,7 +59,7 @@ def batch(
 
         with _cluster(scheduler) as executor:
             run = run_batch(
-                _recipe(recipe),
+                _deformation(recipe),
                 paths,
                 output,
                 executor=executor,
@@ -99,7 +100,11 @@ def _paths(patterns: list[str]) -> list[Path]:
     return list(found)
 
 
-def _recipe(name: str) -> Recipe:
+def _deformation(name: str) -> Recipe | Stack:
+    if name.lower().endswith(".pliant"):
+        from pliant.scene.project import load_project
+
+        return load_project(name).stack
     if name.lower().endswith(".toml"):
         from pliant.scene.recipe import read_recipe
 

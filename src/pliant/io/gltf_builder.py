@@ -16,7 +16,7 @@ from pliant.io.gltf_file import packed
 from pliant.io.gltf_scene import unit
 from pliant.io.losses import as_float32, losses_of
 from pliant.io.text import shown
-from pliant.mesh import Material, PolygonMesh
+from pliant.mesh import CornerValues, Material, PolygonMesh
 
 _PICTURES = {".png": "image/png", ".jpg": "image/jpeg", ".jpeg": "image/jpeg"}
 _ARRAY, _ELEMENTS = 34962, 34963
@@ -55,7 +55,7 @@ def new_file(mesh: PolygonMesh, keeps: Keeps, path: Path) -> Encoded:
     """A GLB, or a description with its buffer inside, written from the mesh alone."""
     losses = list(losses_of(mesh, keeps))
     made = _Building()
-    source, corner_of, triangles = _split(mesh)
+    source, corner_of, triangles = split(mesh)
     if more := len(source) - len(mesh.points):
         losses.append(f"{more:,} vertices are added where seams split them")
     points, rounding = as_float32(mesh.points, "glTF")
@@ -99,15 +99,13 @@ def new_file(mesh: PolygonMesh, keeps: Keeps, path: Path) -> Encoded:
     return Encoded(packed(json, made.chunk, binary=binary), tuple(losses), tuple(notes))
 
 
-def _split(mesh: PolygonMesh) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.integer[Any]]]:
+def split(mesh: PolygonMesh) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.integer[Any]]]:
     """The vertex that each of the file's is made from, a corner where it is used or -1, and (t, 3) triangles.
 
     A vertex keeps its place; another is added at the end for each further combination of coordinates and normals
     that its corners have.
     """
-    flat, count = mesh.faces.flat.astype(np.int64), len(mesh.points)
-    corner_of = np.full(count, -1)
-    corner_of[flat] = np.arange(len(flat))
+    flat, count, corner_of = mesh.faces.flat.astype(np.int64), len(mesh.points), corners_of(mesh)
     columns = [each.indices for each in (mesh.uvs, mesh.normals) if each is not None]
     if all((column == column[corner_of[flat]]).all() for column in columns):
         return np.arange(count), corner_of, mesh.triangles
@@ -125,6 +123,13 @@ def _split(mesh: PolygonMesh) -> tuple[NDArray[np.int64], NDArray[np.int64], NDA
     return source, corner_of, place[which][mesh.triangle_corners]
 
 
+def corners_of(mesh: PolygonMesh) -> NDArray[np.int64]:
+    """(n,) a corner where each vertex is used, or -1."""
+    found = np.full(len(mesh.points), -1)
+    found[mesh.faces.flat] = np.arange(len(mesh.faces.flat))
+    return found
+
+
 def _attributes(
     mesh: PolygonMesh,
     made: _Building,
@@ -135,26 +140,39 @@ def _attributes(
     """The accessors of the vertices' values."""
     bounds = {"min": points.min(axis=0).tolist(), "max": points.max(axis=0).tolist()} if len(points) else {}
     result = {"POSITION": made.accessor(points, **bounds)}
-    normals = mesh.vertex_attributes.get("normals")
-    at_vertices = None if normals is None else np.asarray(normals, np.float64)[source]
-    for name, corner, values in (("NORMAL", mesh.normals, at_vertices), ("TEXCOORD_0", mesh.uvs, None)):
-        if corner is not None and len(corner.values):
-            index = np.where(corner_of >= 0, corner.indices[corner_of], -1) if len(corner.indices) else corner_of
-            values = np.where((index >= 0)[:, None], corner.values[index], 0.0)
-        if values is None:
-            continue
-        if name == "NORMAL":
-            empty = ~values.any(axis=1)
-            values = unit(values)
-            values[empty] = [0, 0, 1]  # a normal must have a length
-        else:
-            values = values[:, :2] * [1, -1] + [0, 1]
-        result[name] = made.accessor(values.astype(np.float32))
+    turned = normals_of(mesh, source, corner_of)
+    if turned is not None:
+        result["NORMAL"] = made.accessor(turned.astype(np.float32))
+    if mesh.uvs is not None and len(mesh.uvs.values):
+        uvs = _at_corners(mesh.uvs, corner_of)[:, :2] * [1, -1] + [0, 1]
+        result["TEXCOORD_0"] = made.accessor(uvs.astype(np.float32))
     colors = mesh.vertex_attributes.get("colors")
     if colors is not None and is_color(colors):
         typed = colors if colors.dtype == np.uint8 else as_float(colors).astype(np.float32)
         result["COLOR_0"] = made.accessor(typed[source], normalized=bool(typed.dtype == np.uint8))
     return result
+
+
+def normals_of(
+    mesh: PolygonMesh, source: NDArray[np.int64], corner_of: NDArray[np.int64]
+) -> NDArray[np.float64] | None:
+    """(m, 3) unit normals of a file's vertices, made as :func:`split` says; None where the mesh has none."""
+    values = mesh.vertex_attributes.get("normals")
+    found = None if values is None else np.asarray(values, np.float64)[source]
+    if mesh.normals is not None and len(mesh.normals.values):
+        found = _at_corners(mesh.normals, corner_of)
+    if found is None:
+        return None
+    empty = ~found.any(axis=1)
+    result = unit(found)
+    result[empty] = [0, 0, 1]  # a normal must have a length
+    return result
+
+
+def _at_corners(values: CornerValues, corner_of: NDArray[np.int64]) -> NDArray[np.float64]:
+    """(m, d) the values at some corners, zero where there is none."""
+    index = np.where(corner_of >= 0, values.indices[corner_of], -1) if len(values.indices) else corner_of
+    return np.where((index >= 0)[:, None], values.values[index], 0.0)
 
 
 def _materials(json: dict[str, Any], made: _Building, materials: list[Material]) -> list[str]:

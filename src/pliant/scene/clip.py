@@ -179,9 +179,13 @@ class Clip:
 
     def sample(self, time: float) -> PolygonMesh:
         """The mesh at a time, its normals too."""
-        points = self._points(self._binding(), time)
+        return self.posed(Frame(time, self._points(self._binding(), time)))
+
+    def posed(self, frame: Frame) -> PolygonMesh:
+        """The mesh as a frame of this clip has it, its normals too."""
+        points = frame.points
         if self.motion is None and self.intensity == 1.0:
-            return self.mesh.with_points(points, normals=self.stack_at(time)._normals(self.mesh, points))
+            return self.mesh.with_points(points, normals=self.stack_at(frame.time)._normals(self.mesh, points))
         from pliant.surface.shading import shading_normals
 
         return self.mesh.with_points(points, normals=shading_normals(self.mesh, points))

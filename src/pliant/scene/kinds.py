@@ -21,7 +21,7 @@ from pliant.scene.fields import Field, arguments_of, fields_of, plain
 from pliant.scene.rooms import deformer_classes, known_as
 from pliant.scene.values import Arrays, encode_fields, make
 
-MOST_CONTROLS = 10_000_000  # of what is laid by a description: one that asks for more asks for the whole machine
+MOST_CONTROLS = 1_000_000  # of what is laid by a description: one that asks for more asks for the whole machine
 _COUNTS = {"shape", "patches"}
 
 

@@ -28,6 +28,7 @@ from pliant.space.placed import place
 
 VERSION = 1
 _UPRIGHT = Affine.rotation("x", -np.pi / 2)  # from z up to y up
+_LARGEST = 1e300
 _HEAD = ("pliant", "title", "about", "mode", "duration", "fps", "ending", "layer", "key")
 
 
@@ -64,6 +65,9 @@ class Recipe:
         for entry in self.document:
             if entry not in _HEAD:
                 raise InvalidParameter(f"{self.name}: recipes have no {entry!r}; they have: {', '.join(_HEAD)}")
+        for entry in ("duration", "fps"):
+            if not _is_number(self.document.get(entry, 1)):
+                raise InvalidParameter(f"{self.name}: its {entry} is {self.document[entry]!r}; a number is needed")
         object.__setattr__(self, "layers", self._tables("layer"))
         object.__setattr__(self, "keys", self._tables("key"))
         if not self.layers:
@@ -137,9 +141,8 @@ class Recipe:
         InvalidParameter
             A layer or a key that is not understood.
         """
-        own = float(
-            self.document.get("duration", max((float(key.get("time", 0)) for key in self.keys), default=1.0) or 1)
-        )
+        last = max((key["time"] for key in self.keys if _is_number(key.get("time"))), default=1.0)
+        own = float(self.document.get("duration", last or 1))
         wanted = own if duration is None else float(duration)
         upright = mesh if up == "z" else _UPRIGHT.inverted()(mesh)
         stack = self.stack(upright, intensity=intensity)
@@ -154,12 +157,12 @@ class Recipe:
     ) -> Iterator[tuple[str, float, dict[str, Any], Easing]]:
         for place_, data in enumerate(self.keys):
             layer, time = data.get("layer"), data.get("time")
-            if not isinstance(layer, str) or not isinstance(time, int | float):
+            if not isinstance(layer, str) or not _is_number(time):
                 raise InvalidParameter(f"{self.name}: key {place_} needs a layer, a word, and a time, a number")
             try:
                 yield (
                     layer,
-                    float(time),
+                    float(data["time"]),
                     keyed_values(data, stack[layer], mesh, intensity),
                     data.get("easing", "linear"),
                 )
@@ -175,6 +178,11 @@ class Recipe:
 
 def read_recipe(path: Path | str) -> Recipe:
     """The recipe in a TOML file.
+
+    Parameters
+    ----------
+    path
+        The file; the page on scenes says what may stand in it.
 
     Raises
     ------
@@ -192,6 +200,11 @@ def read_recipe(path: Path | str) -> Recipe:
         raise UnreadableFile(path, "it is nested too deeply to be a recipe") from error
     except InvalidParameter as error:
         raise UnreadableFile(path, str(error)) from error
+
+
+def _is_number(value: Any) -> bool:
+    """Whether it is a number that a computer can hold: TOML's may be of any length."""
+    return isinstance(value, int | float) and abs(value) < _LARGEST
 
 
 def _turned(deformer: Any) -> SpaceDeformer:

@@ -165,8 +165,7 @@ class Stack(Deformer):
         sizes = [int(np.prod(shape)) for shape in shapes]
         parts = np.split(checked_controls(controls, (sum(sizes),)), np.cumsum(sizes)[:-1])
         return self._with(
-            layer.moved(part.reshape(shape))
-            for layer, part, shape in zip(self.layers, parts, shapes, strict=True)
+            layer.moved(part.reshape(shape)) for layer, part, shape in zip(self.layers, parts, shapes, strict=True)
         )
 
     def bind(self, target: Target) -> StackBinding:

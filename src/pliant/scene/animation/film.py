@@ -46,7 +46,8 @@ def write_clip(
         raise InvalidParameter(f"a film's width and height are even numbers; given: {size}")
     if len(clip.times) > MOST_FRAMES:
         raise InvalidParameter(f"{len(clip.times):,} frames are too many for a film; lower fps or duration")
-    sequence = clip.sequence()
+    count = len(clip.times)
+    sequence = clip.sequence(None if progress is None else lambda done, _: progress(done, 2 * count))
     pictures = draw_film(
         clip.mesh, np.asarray(sequence.points), size=size, view=view, up=up, background=background, turns=turns,
         texture=texture,
@@ -55,7 +56,7 @@ def write_clip(
         for done, picture in enumerate(pictures, start=1):
             film.append_data(picture)
             if progress is not None:
-                progress(done, len(sequence))
+                progress(count + done, 2 * count)
     return LossReport(path, path.suffix[1:].upper(), (), ("a film shows the shape; it does not hold it",))
 
 

@@ -30,11 +30,11 @@ from pliant.scene.sequence import MeshSequence
 
 
 def write_clip(clip: Clip, path: Path, progress: Progress | None, *, name: str = "frame") -> LossReport:
-    """A morph target a frame; they are called ``name`` and their number."""
+    """A morph target a frame, of normals too where the mesh has some; they are called ``name`` and their number."""
     at_rest, file, shares = at_rest_file(clip.mesh, path)
-    writer = MorphWriter(file, shares)
+    writer = MorphWriter(file, shares, clip.mesh)
     for i, frame in enumerate(clip.frames(progress)):
-        writer.add_target(f"{name} {i}", frame.points - clip.mesh.points)
+        writer.add_target(f"{name} {i}", clip.posed(frame))
     write_bytes(path, writer.finish(clip.times, np.eye(len(clip.times))))
     return LossReport(path, Gltf.name, at_rest.losses, at_rest.notes)
 
@@ -57,26 +57,27 @@ def at_rest_file(mesh: PolygonMesh, path: Path) -> tuple[Encoded, GltfFile, list
         kept = same_file(mesh, carrier, path)
         if kept is not None and not kept.companions:
             file = _opened(kept, path)
-            found = _shares_of(file, carrier.layout)
+            found = _shares_of(file, carrier.layout, mesh)
             if found is not None:
                 return kept, file, found
     made = gltf_builder.new_file(mesh, Gltf.keeps, path)
     file = _opened(made, path)
-    vertices = gltf_builder._split(mesh)[0]
+    vertices, corners, _ = gltf_builder.split(mesh)
     count = len(file.json["meshes"][0]["primitives"])
-    return made, file, [Share(0, i, 0, vertices, np.eye(3)) for i in range(count)]
+    return made, file, [Share(0, i, 0, vertices, corners, np.eye(3)) for i in range(count)]
 
 
 def _opened(encoded: Encoded, path: Path) -> GltfFile:
     return opened(Source(b"".join(encoded.parts), path, path.parent))
 
 
-def _shares_of(file: GltfFile, layout: Layout) -> list[Share] | None:
+def _shares_of(file: GltfFile, layout: Layout, mesh: PolygonMesh) -> list[Share] | None:
     """Where the vertices of a file that was read are; None where a mesh stands in two places, or has targets."""
     if len(file.json.get("buffers", [])) != 1 or file.json.get("animations"):
         return None
     rows = {(part.first, part.accessor): part for part in layout.parts}
     waiting, shares, seen = list(layout.parts), [], set()
+    corners = gltf_builder.corners_of(mesh)
     for node, matrix in placed_nodes(file):
         at = item(file.json["nodes"], node)["mesh"]
         if at in seen or np.linalg.matrix_rank(matrix[:3, :3]) < 3:
@@ -91,5 +92,5 @@ def _shares_of(file: GltfFile, layout: Layout) -> list[Share] | None:
                 known[key] = np.arange(part.first, part.first + part.count)
             if "targets" in primitive:
                 return None
-            shares.append(Share(at, i, node, known[key], matrix[:3, :3]))
+            shares.append(Share(at, i, node, known[key], corners[known[key]], matrix[:3, :3]))
     return shares

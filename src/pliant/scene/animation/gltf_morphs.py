@@ -13,8 +13,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pliant.io.gltf_builder import normals_of
 from pliant.io.gltf_file import GltfFile, packed
+from pliant.io.gltf_scene import unit
 from pliant.io.losses import as_float32
+from pliant.mesh import PolygonMesh
 
 Floats = NDArray[np.float64]
 
@@ -31,8 +34,8 @@ class Share:
         Which one of the file.
     node
         The node that shows it.
-    vertices
-        (m,) the mesh's vertex that each of its own is.
+    vertices, corners
+        (m,) the mesh's vertex that each of its own is, and a corner where it is used, or -1.
     linear
         (3, 3) from its own space to the world's.
     """
@@ -41,6 +44,7 @@ class Share:
     primitive: int
     node: int
     vertices: NDArray[np.int64]
+    corners: NDArray[np.int64]
     linear: Floats
 
 
@@ -53,28 +57,36 @@ class MorphWriter:
         The mesh at rest.
     shares
         Where its vertices are in the file.
+    mesh
+        The mesh at rest itself.
     """
 
-    def __init__(self, file: GltfFile, shares: Sequence[Share]) -> None:
+    def __init__(self, file: GltfFile, shares: Sequence[Share], mesh: PolygonMesh) -> None:
         self._json: dict[str, Any] = file.json
-        self._binary, self._shares = file.binary, shares
+        self._binary, self._shares, self._mesh = file.binary, shares, mesh
         self._chunk = bytearray(file.buffers[0])
         self._names: list[str] = []
 
-    def add_target(self, name: str, displacements: Floats) -> None:
-        """One more target of every primitive: (n, 3) displacements of the mesh's vertices."""
+    def add_target(self, name: str, frame: PolygonMesh) -> None:
+        """One more target of every primitive: how positions and normals of the mesh differ in a frame."""
         self._names.append(name)
         known: dict[tuple[int, bytes], int] = {}
+        moved = frame.points - self._mesh.points
         for share in self._shares:
-            own = np.linalg.solve(share.linear, displacements[share.vertices].T).T
-            local = np.ascontiguousarray(as_float32(np.asarray(own, np.float64), "glTF")[0]) + np.float32(
-                0.0
-            )  # no negative zeros
-            key = len(local), local.tobytes()
-            if key not in known:
-                known[key] = self._accessor(local)
             primitive = self._json["meshes"][share.mesh]["primitives"][share.primitive]
-            primitive.setdefault("targets", []).append({"POSITION": known[key]})
+            own = np.asarray(np.linalg.solve(share.linear, moved[share.vertices].T).T, np.float64)
+            target = {"POSITION": self._known(known, own)}
+            if "NORMAL" in primitive["attributes"]:
+                target["NORMAL"] = self._known(known, _normals(frame, share) - _normals(self._mesh, share))
+            primitive.setdefault("targets", []).append(target)
+
+    def _known(self, known: dict[tuple[int, bytes], int], values: Floats) -> int:
+        """The accessor of (m, 3) values, one for those that are alike."""
+        local = np.ascontiguousarray(as_float32(values, "glTF")[0]) + np.float32(0.0)  # no negative zeros
+        key = len(local), local.tobytes()
+        if key not in known:
+            known[key] = self._accessor(local)
+        return known[key]
 
     def finish(self, times: Sequence[float] | None = None, weights: Floats | None = None) -> list[bytes]:
         """The parts of the file.
@@ -141,3 +153,9 @@ class MorphWriter:
         self._chunk += values.tobytes()
         self._json["bufferViews"].append(said if target is None else {**said, "target": target})
         return len(self._json["bufferViews"]) - 1
+
+
+def _normals(mesh: PolygonMesh, share: Share) -> Floats:
+    """(m, 3) unit normals of a share's vertices in its own space."""
+    found = normals_of(mesh, share.vertices, share.corners)
+    return np.zeros((len(share.vertices), 3)) if found is None else unit(found @ share.linear)
