@@ -35,7 +35,7 @@ export function newExtended(studio: Studio): void {
       counts,
       row(
         t(prism ? "roundSides" : "roundAround"),
-        slider(choice.shape[0]!, { label: t("roundAround"), low: prism ? 3 : 5, high: 16, step: 1, oninput: (n) => put(0, n) }),
+        slider(choice.shape[0]!, { label: t("roundAround"), low: prism ? 3 : 5, high: 16, step: 1, text: String, oninput: (n) => put(0, n) }),
       ),
       patched(1, t("roundOut")),
       patched(2, t(choice.kind === "sphere" ? "roundPoles" : "roundAlong")),

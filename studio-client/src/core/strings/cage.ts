@@ -25,6 +25,7 @@ export const CAGE = {
     "Draw lines across the limbs: each makes a plane along the view, with a ring around what it cuts.",
     "在肢体上画线：每条线沿视线方向形成一个切面，并在截面外生成一个环。",
   ],
+  drawingPlanes: ["Drags draw; Alt turns the view", "拖动即画线；Alt 拖动旋转视图"],
   plane: ["Plane", "切面"],
   planeMissed: ["That line misses the shape: draw it across a limb.", "该线没有经过形状：请画过肢体。"],
   ringSides: ["Corners of a ring", "环的角数"],

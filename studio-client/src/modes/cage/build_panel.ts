@@ -2,7 +2,7 @@
 
 import { h, replace } from "../../core/dom";
 import { t, tWord } from "../../core/strings";
-import { button, iconButton, row, segments, select, slider } from "../../panels/controls";
+import { button, checkbox, iconButton, row, segments, select, slider } from "../../panels/controls";
 import type { Method, Plans } from "./plan";
 
 export const KINDS = ["mean_value", "green", "harmonic", "maximum_entropy", "quad_mean_value", "quad_green"] as const;
@@ -66,6 +66,7 @@ export class BuildPanel {
           low: 20,
           high: 600,
           step: 10,
+          text: String,
           oninput: (vertices) => this.plans.change({ vertices }),
         }),
       ),
@@ -79,16 +80,17 @@ export class BuildPanel {
     const without = (at: number): void => this.change({ cuts: now.cuts.filter((_, i) => i !== at) });
     return [
       h("p", { class: "muted" }, t("drawPlanes")),
+      checkbox(t("drawingPlanes"), now.drawing, (drawing) => this.plans.change({ drawing })),
       now.cuts.length > 0 &&
         h(
           "ol",
           { class: "cage-cuts" },
-          ...now.cuts.map((_, at) => h("li", null, h("span", null, `${t("plane")} ${at + 1}`), iconButton("close", `${t("remove")} ${at + 1}`, () => without(at)))),
+          ...now.cuts.map((_, at) => h("li", null, h("span", null, `${t("plane")} ${at}`), iconButton("close", `${t("remove")} ${t("plane")} ${at}`, () => without(at)))),
         ),
       this.message !== "" && h("p", { class: "cage-message" }, this.message),
       row(
         t("ringSides"),
-        slider(now.sides, { label: t("ringSides"), low: 3, high: 12, step: 1, ondone: (sides) => this.change({ sides }) }),
+        slider(now.sides, { label: t("ringSides"), low: 3, high: 12, step: 1, text: String, ondone: (sides) => this.change({ sides }) }),
       ),
     ];
   }

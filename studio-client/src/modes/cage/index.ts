@@ -91,7 +91,7 @@ class CageMode extends PointsMode {
   }
 
   override down(pointer: Pointer): boolean {
-    if (this.drawsPlanes && !this.overGizmo) {
+    if (this.drawsPlanes && !pointer.alt) {
       this.planes.begin(pointer);
       return true;
     }

@@ -37,6 +37,7 @@ export class SitesPanel {
           low: 4,
           high: 120,
           step: 1,
+          text: String,
           oninput: (count) => (this.count = count),
         }),
       ),
