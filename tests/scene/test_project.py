@@ -77,7 +77,28 @@ def test_all_that_rides_on_a_mesh_comes_back(tmp_path, box_mesh):
     assert again.vertex_attributes["weight"].dtype == np.float32
 
 
-def test_a_texture_elsewhere_is_left_out_and_told(tmp_path):
+def test_a_texture_elsewhere_travels_along(tmp_path):
+    library = {"skin": Material("skin", texture=tmp_path / "skin.png")}
+    (tmp_path / "skin.png").write_bytes(b"picture")
+    (tmp_path / "projects").mkdir()
+    pl.save_project(pl.Scene(MESH.replace(material_library=library)), tmp_path / "projects" / "scene.pliant")
+    (tmp_path / "skin.png").unlink()
+    again = pl.load_project(tmp_path / "projects" / "scene.pliant")
+    assert again.mesh.material_library["skin"].texture.read_bytes() == b"picture"
+    pl.save_project(again, tmp_path / "moved.pliant")
+    assert pl.load_project(tmp_path / "moved.pliant").mesh.material_library["skin"].texture.suffix == ".png"
+
+
+@pytest.mark.parametrize("entry", [{"ending": ".sh", "array": "pictures/0"}, {"ending": ".png", "array": "none"}, 7])
+def test_pictures_that_are_none_are_refused(tmp_path, entry):
+    from pliant.scene.pictures import unpacked
+
+    library = {"skin": Material("skin")}
+    with pytest.raises(InvalidParameter, match="picture of the material 'skin' is none"):
+        unpacked(MESH.replace(material_library=library), {"skin": entry}, {"pictures/0": np.zeros(3, np.uint8)})
+
+
+def test_a_texture_that_is_gone_is_left_out_and_told(tmp_path):
     library = {"skin": Material("skin", texture=tmp_path / "skin.png")}
     (tmp_path / "projects").mkdir()
     with pytest.warns(PliantWarning, match="texture of 'skin' is left out.*nothing outside"):

@@ -1,7 +1,7 @@
 """Project files: a scene in one file, ``.pliant``.
 
 A project is a zip of a JSON manifest, which has a version, and of arrays as .npy. The mesh is embedded, or stands in a
-file of its own in the project's folder, whose hash is kept.
+file of its own in the project's folder, whose hash is kept. Textures in that folder are referred to, others embedded.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from pliant.mesh import PolygonMesh
 from pliant.scene.archive import read_archive, write_archive
 from pliant.scene.clip_data import clip_data, clip_of
 from pliant.scene.layer_data import stack_data, stack_of
+from pliant.scene.pictures import packed, unpacked
 from pliant.scene.places import inside, located, portable, stored_place
 from pliant.scene.scene import Scene
 from pliant.scene.upgrades import VERSION, upgraded
@@ -51,17 +52,19 @@ def save_project(scene: Scene, path: Path | str, *, embed: bool = True) -> None:
     Warns
     -----
     PliantWarning
-        A texture lies outside the project's folder: the project cannot take it along.
+        A texture lies outside the project's folder and cannot be read: the project cannot take it along.
     """
     target, arrays = Path(path), Arrays()
     try:
-        mesh = encode(portable(scene.mesh, target.parent), arrays, "mesh") if embed else _reference(scene.mesh, target)
+        shape, pictures = packed(scene.mesh, target.parent, arrays) if embed else (scene.mesh, {})
+        mesh = encode(portable(shape, target.parent), arrays, "mesh") if embed else _reference(shape, target)
         selections = {name: encode(ids, arrays, f"selections/{name}") for name, ids in scene.selections.items()}
         manifest = {
             "format": FORMAT,
             "version": VERSION,
             "software": f"pliant {__version__}",
             "mesh": mesh,
+            "pictures": pictures,
             "stack": stack_data(scene.stack, arrays),
             "clip": None if scene.clip is None else clip_data(scene.clip, arrays),
             "selections": selections,
@@ -92,7 +95,8 @@ def load_project(path: Path | str, *, mesh: PolygonMesh | None = None) -> Scene:
         raise UnreadableFile(path, f"it is a {manifest.get('format')!r}, not a {FORMAT!r}")
     try:
         manifest = upgraded(manifest)
-        shape = mesh if mesh is not None else _mesh(manifest.get("mesh"), arrays, Path(path))
+        stored = mesh if mesh is not None else _mesh(manifest.get("mesh"), arrays, Path(path))
+        shape = stored if mesh is not None else unpacked(stored, manifest.get("pictures"), arrays)
         chosen = manifest.get("selections")
         if not isinstance(chosen, dict):
             raise InvalidParameter("its selections are no names and vertices")

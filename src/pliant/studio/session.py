@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pliant.errors import InvalidParameter, PliantError, PliantWarning
+from pliant.scene.pictures import pictures_folder
 from pliant.scene.scene import Scene
 from pliant.studio.autosave import Autosave
 from pliant.studio.catalogue import catalogue
@@ -242,7 +243,7 @@ class Session:
 
     def may_read(self, path: Path) -> bool:
         """Whether a file that a mesh refers to may be shown: of an upload, of the studio's folder, or a sample's."""
-        folders = [self.uploads.folder, self.root, samples_folder(), *self.readable]
+        folders = [self.uploads.folder, self.root, samples_folder(), pictures_folder(), *self.readable]
         found = path.resolve()
         return any(folder is not None and found.is_relative_to(folder.resolve()) for folder in folders)
 
