@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import secrets
 import shutil
 import tempfile
@@ -151,6 +152,11 @@ def safe_name(name: str) -> str:
     ):
         raise InvalidParameter(f"{name[:80]!r} is no name for a file")
     return last
+
+
+def file_stem(name: str) -> str:
+    """A document's name as the beginning of a file's."""
+    return re.sub(r"[^\w.-]+", "-", name).strip("-.") or "shape"
 
 
 def inside(root: Path | None, name: str) -> Path:

@@ -52,8 +52,11 @@ def keyed(before: Scene, after: Scene, time: float, recording: bool) -> Scene:
     recording
         Whether values without keys get some too.
     """
-    if after.clip is None and not recording:
-        return after
+    known = set() if before.clip is None else set(before.clip.tracks)
+    if (after.clip is None and (before.clip is not None or not recording)) or not known.issuperset(
+        clip_of(after).tracks
+    ):
+        return after  # nothing to set, or an edit of the keys themselves
     clip = clip_of(after)
     changed = False
     tracked = {(track.layer, track.field) for track in clip.tracks}

@@ -1,6 +1,7 @@
 """What pages can ask for: small functions, registered by name when this package is imported."""
 
 from pliant.studio.commands import (
+    animation,
     axial,
     cage,
     dragging,
@@ -17,12 +18,14 @@ from pliant.studio.commands import (
     points,
     sites,
     surface,
+    templates,
     time,
+    transfer,
     transforms,
 )
-    transfer,
 
 __all__ = [
+    "animation",
     "axial",
     "cage",
     "dragging",
@@ -39,7 +42,8 @@ __all__ = [
     "points",
     "sites",
     "surface",
+    "templates",
     "time",
+    "transfer",
     "transforms",
 ]
-    "transfer",

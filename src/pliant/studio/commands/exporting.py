@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 import tempfile
 from collections.abc import Callable
 from pathlib import Path
@@ -15,6 +14,7 @@ from pliant.field.measures import principal_strains, volume_ratio
 from pliant.io import meshes, transforms
 from pliant.io.report import LossReport
 from pliant.studio.commands.fields import _moved, _room
+from pliant.studio.files import file_stem
 from pliant.studio.frames import Frame
 from pliant.studio.request import Request, command
 from pliant.studio.session import Session
@@ -71,7 +71,7 @@ def surface(session: Session, request: Request) -> Frame:
 
 def _handed_over(session: Session, ending: str, write: Callable[[Path], LossReport]) -> Frame:
     """Files written for a page to take, with their report. Their names are made here, not taken from a page."""
-    stem = re.sub(r"[^\w.-]+", "-", session.name).strip("-.") or "shape"
+    stem = file_stem(session.name)
     with tempfile.TemporaryDirectory(prefix="pliant-export-") as name:
         folder = Path(name)
         report = write(folder / f"{stem}{ending}")
