@@ -37,7 +37,10 @@ def main(folder: str) -> None:
         job = json.loads(line)
         seed, others = corpus()[job["name"]], list(corpus().values())
         for number, data in enumerate(mutants(seed, others, job["count"], job["name"], job["start"]), job["start"]):
-            print(json.dumps({"number": number, **_outcome(job["name"], data, folder)}), file=answers)
+            found = _outcome(job["name"], data, folder)
+            print(json.dumps({"number": number, **found}), file=answers)
+            if "leave" in found:  # the most that a process has taken is remembered for ever
+                return
 
 
 def _outcome(name: str, data: bytes, folder: str) -> dict[str, str]:
@@ -48,7 +51,11 @@ def _outcome(name: str, data: bytes, folder: str) -> dict[str, str]:
         if used > SECONDS:
             raise TimeoutError(f"it took {used:.1f} s of the processor")
         if resource.getrusage(resource.RUSAGE_CHILDREN).ru_maxrss > MEMORY >> 10:
-            raise MemoryError("a process that reads for this one took too much")
+            return {
+                "outcome": "broken",
+                "kind": "memory: a process that reads for this one took too much",
+                "leave": "yes",
+            }
         return {"outcome": outcome}
     except BaseException as error:  # also SystemExit, or whatever a library ends with
         where = traceback.extract_tb(error.__traceback__)[-1]

@@ -52,6 +52,9 @@ class Child:
                 number += 1
                 if answer is None:
                     break
+                if "leave" in answer:
+                    self._end()
+                    break
 
     def end(self) -> None:
         """End the process."""

@@ -37,13 +37,13 @@ def from_json(path: Path, data: bytes) -> Tree:
         for group in stored["groups"].values():
             for place in group.get("alias", ()):
                 if place != "/":
-                    tree.groups.add(place)
+                    tree.groups.add(str(place))
                     found = {each["name"]: simple(each["value"]) for each in group.get("attributes", ())}
                     tree.attributes[place] = {name: word for name, word in found.items() if isinstance(word, str)}
         for dataset in stored["datasets"].values():
             value = _value(dataset)
             if value is not None:
-                tree.values.update(dict.fromkeys(dataset.get("alias", ()), value))
+                tree.values.update({str(place): value for place in dataset.get("alias", ())})
     except (orjson.JSONDecodeError, KeyError, TypeError, AttributeError, ValueError, OverflowError) as error:
         raise UnreadableFile(path, f"it is no HDF5-JSON: {error}", "the file is cut off or damaged") from error
     return tree

@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 CELLS = ("verts", "lines", "polys", "strips")
 REFUSED = 3
+_MAPPED, _LEAST = 2200 << 20, 800 << 20  # bytes of address space that libraries map; of memory that all may take
 
 
 def main(path: str, out: str, kind: str, memory: int, seconds: int) -> int:
@@ -134,6 +135,9 @@ def limit(memory: int, seconds: int) -> None:
     except ImportError:  # Windows has no such limits; the parent's time-out still holds
         return
     resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
+    if sys.platform == "linux":  # there it bounds what is written to, not what libraries map
+        data = max(_LEAST, memory - _MAPPED)
+        resource.setrlimit(resource.RLIMIT_DATA, (data, data))
     resource.setrlimit(resource.RLIMIT_CPU, (seconds, seconds))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 

@@ -85,6 +85,8 @@ class ExtendedFFD(SpaceDeformer):
         for at, block in enumerate(self.blocks):
             if block.index.ndim != 3 or block.index.min() < 0 or block.index.max() >= len(points):
                 raise InvalidDeformer(f"block {at} uses control points that are not among the {len(points)}")
+            if len(block.bases) != 3 or len(block.wrapped) != 3 or not set(block.bases) <= {"bezier", "bspline"}:
+                raise InvalidDeformer(f"block {at} needs a basis an axis, 'bezier' or 'bspline', and whether it wraps")
         object.__setattr__(self, "points", frozen(points, np.float64))
         object.__setattr__(self, "displacements", frozen(moves, np.float64))
         object.__setattr__(self, "frames", self.frames or (None,) * len(self.blocks))

@@ -126,5 +126,8 @@ def _name_of(host: str) -> str:
 
 def _host_of(origin: str) -> str:
     """Host and port of an origin; empty where it is none of the web."""
-    parts = urlsplit(origin.lower())
+    try:
+        parts = urlsplit(origin.lower())
+    except ValueError:
+        return ""
     return parts.netloc if parts.scheme in ("http", "https") else ""

@@ -94,7 +94,7 @@ def coefficients(session: Session, request: Request) -> None:
 def sample(session: Session, request: Request) -> None:
     """Random coefficients; landmarks stay where they are seen."""
     shape = model_layer(session.required.stack, request.text("layer"))
-    random = np.random.default_rng(request.integer("seed"))
+    random = np.random.default_rng(abs(request.integer("seed")))
     _commit(session, request, replace(shape, coefficients=random.standard_normal(shape.model.count)), "sample")
 
 
@@ -167,7 +167,7 @@ def field(session: Session, request: Request) -> Frame:
     count = min(max(request.integer("count", 300), 1), _MOST_ARROWS)
     places = session.shown.binding.result[_spread(session, count)]
     kernel = GaussianKernel(sigma=request.number("sigma"), scale=request.number("scale"))
-    vectors = GaussianProcess(kernel).draw(places, seed=request.integer("seed", 0))
+    vectors = GaussianProcess(kernel).draw(places, seed=abs(request.integer("seed", 0)))
     table = np.rint(255 * color_table(SEQUENTIAL)).astype(np.uint8)
     arrays: dict[str, NDArray[Any]] = {
         "positions": places.astype(np.float32),
