@@ -7,7 +7,7 @@ import math
 import numpy as np
 from numpy.typing import NDArray
 
-from pliant.numerics.compiling import kernel
+from pliant.numerics.compiling import inlined, kernel
 
 _SMALL = 1e-300
 
@@ -18,6 +18,13 @@ def corners_at(triangles: NDArray[np.int32], count: int) -> tuple[NDArray[np.int
     starts = np.zeros(count + 1, np.int64)
     np.cumsum(np.bincount(flat, minlength=count), out=starts[1:])
     return starts, (np.argsort(flat, kind="stable") // 3).astype(np.int32)
+
+
+@inlined
+def _pack(out, row, x, y, z, factor):
+    out[row, 0] = np.int8(math.floor(factor * x + 0.5))
+    out[row, 1] = np.int8(math.floor(factor * y + 0.5))
+    out[row, 2] = np.int8(math.floor(factor * z + 0.5))
 
 
 @kernel
@@ -38,25 +45,41 @@ def shown_normals(points, chosen, triangles, starts, around):
             nz += ux * vy - uy * vx
         length = math.sqrt(nx * nx + ny * ny + nz * nz)
         if length > _SMALL:
-            out[row, 0] = np.int8(round(127 * nx / length))
-            out[row, 1] = np.int8(round(127 * ny / length))
-            out[row, 2] = np.int8(round(127 * nz / length))
+            _pack(out, row, nx, ny, nz, 127.0 / length)
     return out
+
+
+@kernel
+def packed_normals(sums, chosen):
+    """(k, 3) some of (n, 3) vectors as unit normals, likewise."""
+    out = np.zeros((len(chosen), 3), np.int8)
+    for row in range(len(chosen)):
+        x, y, z = sums[chosen[row], 0], sums[chosen[row], 1], sums[chosen[row], 2]
+        length = math.sqrt(x * x + y * y + z * z)
+        if length > _SMALL:
+            _pack(out, row, x, y, z, 127.0 / length)
+    return out
+
+
+@inlined
+def _steps(low, high):
+    return 65535 / (high - low) if high > low else 0.0
 
 
 @kernel
 def shown_points(points, chosen):
     """(k, 3) some points as uint16 in their bounding box, and its corners: a step is a 65535th of its extent."""
-    low, high = np.full(3, np.inf), np.full(3, -np.inf)
+    low_x = low_y = low_z = np.inf
+    high_x = high_y = high_z = -np.inf
     for row in range(len(chosen)):
-        for axis in range(3):
-            value = points[chosen[row], axis]
-            low[axis] = min(low[axis], value)
-            high[axis] = max(high[axis], value)
-    out = np.zeros((len(chosen), 3), np.uint16)
-    for axis in range(3):
-        extent = high[axis] - low[axis]
-        factor = 65535 / extent if extent > 0 else 0.0
-        for row in range(len(chosen)):
-            out[row, axis] = np.uint16((points[chosen[row], axis] - low[axis]) * factor + 0.5)
-    return out, low, high
+        x, y, z = points[chosen[row], 0], points[chosen[row], 1], points[chosen[row], 2]
+        low_x, low_y, low_z = min(low_x, x), min(low_y, y), min(low_z, z)
+        high_x, high_y, high_z = max(high_x, x), max(high_y, y), max(high_z, z)
+    along_x, along_y, along_z = _steps(low_x, high_x), _steps(low_y, high_y), _steps(low_z, high_z)
+    out = np.empty((len(chosen), 3), np.uint16)
+    for row in range(len(chosen)):
+        vertex = chosen[row]
+        out[row, 0] = np.uint16((points[vertex, 0] - low_x) * along_x + 0.5)
+        out[row, 1] = np.uint16((points[vertex, 1] - low_y) * along_y + 0.5)
+        out[row, 2] = np.uint16((points[vertex, 2] - low_z) * along_z + 0.5)
+    return out, np.array([low_x, low_y, low_z]), np.array([high_x, high_y, high_z])

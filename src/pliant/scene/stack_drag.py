@@ -40,6 +40,7 @@ class LayerDrag:
         self._result = np.array(binding.result)
         if self._heard:
             self._stages = self._begun()
+            self._alone = len(self._stages) == 1 and self._stages[0].passes  # its points are the stack's
 
     def _begun(self) -> list[_Stage]:
         steps = list(self._binding._steps.values())
@@ -65,6 +66,8 @@ class LayerDrag:
     @property
     def points(self) -> Points:
         """(n, 3) the deformed points now: a read-only view of the buffer."""
+        if self._heard and self._alone:
+            return self._drag.points
         view = (self._stages[-1].points if self._heard else self._result).view()
         view.flags.writeable = False
         return view
@@ -104,6 +107,8 @@ class LayerDrag:
         self._controls = np.array(controls, np.float64)
         if not self._heard or not len(touched):
             return np.empty(0, np.int64)
+        if self._alone:
+            return touched
         rows = _rows(touched, len(self._result))
         here: Points | None = self._stages[0].settle(rows, None, self._drag.points)
         for stage in self._stages[1:]:
@@ -127,6 +132,12 @@ class _Stage:
         self._rest, self._mesh = at, target
         self._plain = layer.in_space and not added
         self.turns = not layer.in_space and not added and isinstance(target, PolygonMesh)
+
+    @property
+    def passes(self) -> bool:
+        """Whether its result is its deformer's, whole."""
+        strength = self.layer.strength
+        return self._plain and not isinstance(strength, np.ndarray) and strength == 1.0
 
     def displacement(self, image: Points, rows: Rows = slice(None)) -> Points:
         strength = self.layer.strength

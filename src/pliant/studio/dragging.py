@@ -77,9 +77,10 @@ class Dragging(ABC):
         known = self._index is not None and (
             touched is self._index or (len(touched) == len(self._index) and np.array_equal(touched, self._index))
         )
-        stage.told[touched] = np.nan  # only near: to be told again, exactly
-        if not known and not everything:
-            arrays["index"] = touched.astype(np.uint32)
+        if not known:
+            stage.told[touched] = np.nan  # only near: to be told again, exactly
+            if not everything:
+                arrays["index"] = touched.astype(np.uint32)
         self._index = touched
         self._tell_others(touched, points, everything)
         return Frame(head, arrays)

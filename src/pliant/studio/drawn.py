@@ -14,9 +14,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pliant.mesh import Points, PolygonMesh
-from pliant.numerics.shown_points import corners_at, shown_normals, shown_points
+from pliant.numerics.closest_kernels import add_normals
+from pliant.numerics.shown_points import corners_at, packed_normals, shown_normals, shown_points
 
 Integers = NDArray[np.uint32]
+_FEW = 0.4  # of the vertices: for fewer, only the triangles around them are looked at
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +53,13 @@ class DrawnMesh:
         """(k, 3) normals of the surface at all points, or at some, in 8 bits."""
         which = np.arange(len(points)) if chosen is None else chosen
         vertices = np.ascontiguousarray(which, np.int64)
-        found: NDArray[np.int8] = shown_normals(points, vertices, self.triangles, self._starts, self._around)
+        found: NDArray[np.int8]
+        if len(vertices) < _FEW * len(points):
+            found = shown_normals(points, vertices, self.triangles, self._starts, self._around)
+        else:  # each triangle once
+            sums = np.zeros(points.shape)
+            add_normals(points, self.triangles, sums)
+            found = packed_normals(sums, vertices)
         return found
 
     def moved(self, points: Points, chosen: NDArray[np.integer]) -> Moved:
