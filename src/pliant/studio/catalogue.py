@@ -12,6 +12,7 @@ from pliant.scene import easing
 from pliant.scene.kinds import Kind, all_kinds
 from pliant.studio.files import CHUNK, MOST_BYTES
 from pliant.studio.quantities import QUANTITIES
+from pliant.studio.sample_scenes import SCENES
 from pliant.studio.samples import SAMPLES
 from pliant.studio.titles import titled
 
@@ -40,10 +41,15 @@ def _lasting() -> dict[str, Any]:
         "readable": sorted({suffix for each in meshes.formats() for suffix in each["suffixes"]}),
         "transforms": [{"name": each.name, "suffixes": list(each.endings)} for each in transforms.FORMATS],
         "quantities": list(QUANTITIES),
-        "examples": [{"name": name, "title": each.title, "points": each.points} for name, each in SAMPLES.items()],
+        "examples": _examples(),
         "easings": [{"name": name, "handles": _HANDLES.get(name)} for name in easing.NAMES],
         "caps": {"upload": MOST_BYTES, "chunk": CHUNK},
     }
+
+
+def _examples() -> list[dict[str, Any]]:
+    there = {name: each for name, each in SCENES.items() if each.there()}
+    return [{"name": name, "title": each.title, "points": each.points} for name, each in (SAMPLES | there).items()]
 
 
 def _kind(kind: Kind) -> dict[str, Any]:

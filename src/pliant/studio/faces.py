@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from hashlib import blake2b
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -11,10 +12,12 @@ from pliant.face.caricature_deformer import FaceCaricature
 from pliant.face.dense import dense_face
 from pliant.face.face import chosen, faces_from_photo
 from pliant.face.folding import Foldless, without_folds
-from pliant.mesh import PolygonMesh
+from pliant.io.files import write_bytes
+from pliant.mesh import Material, PolygonMesh
 from pliant.scene.layer import Layer
 from pliant.scene.scene import Scene
 from pliant.scene.stack import Stack
+from pliant.studio.samples import samples_folder
 
 NAME = "Caricature"
 PHOTOGRAPHS = (".jpg", ".jpeg", ".png", ".webp", ".tif", ".tiff")
@@ -55,7 +58,7 @@ def face_scene(photograph: Path, number: int = 0) -> tuple[Scene, int]:
     """
     faces = faces_from_photo(photograph)
     face = chosen(faces, number)
-    mesh = dense_face(face).filled().mesh
+    mesh = _dressed(dense_face(face).filled().mesh, face.picture.png())
     return Scene(mesh, Stack((Layer(NAME, FaceCaricature(face.landmarks)),))), len(faces)
 
 
@@ -71,6 +74,13 @@ def face_layer(stack: Stack, name: str) -> FaceCaricature:
     if not isinstance(deformer, FaceCaricature):
         raise InvalidParameter(f"layer {name!r} is no caricature: open a photograph of a face first")
     return deformer
+
+
+def _dressed(mesh: PolygonMesh, picture: bytes) -> PolygonMesh:
+    """The mesh in a picture that pages may see."""
+    path = samples_folder() / f"{blake2b(picture, digest_size=12).hexdigest()}.png"
+    write_bytes(path, picture)
+    return mesh.replace(material_library={"skin": Material("skin", (1.0, 1.0, 1.0), path)})
 
 
 def looked_at(deformer: FaceCaricature, mesh: PolygonMesh) -> Foldless:

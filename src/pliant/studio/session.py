@@ -61,7 +61,6 @@ class Session:
         self.time, self.recording = 0.0, False  # the playhead, in seconds, and whether edits set keys there
         self.locked: dict[str, set[int]] = {}
         self.beside: dict[str, Any] = {}  # what modes keep beside the scene, by their names: forgotten with it
-        self.readable: set[Path] = set()  # folders of pictures that were made here
         self.clients: list[Client] = []
         self.jobs = Jobs(self)
         self.worker = ThreadPoolExecutor(1, "pliant-studio")
@@ -243,7 +242,7 @@ class Session:
 
     def may_read(self, path: Path) -> bool:
         """Whether a file that a mesh refers to may be shown: of an upload, of the studio's folder, or a sample's."""
-        folders = [self.uploads.folder, self.root, samples_folder(), pictures_folder(), *self.readable]
+        folders = [self.uploads.folder, self.root, samples_folder(), pictures_folder()]
         found = path.resolve()
         return any(folder is not None and found.is_relative_to(folder.resolve()) for folder in folders)
 

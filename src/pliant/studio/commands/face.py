@@ -11,6 +11,7 @@ from pliant.errors import InvalidParameter
 from pliant.face.handles import FaceHandles
 from pliant.scene.layer import Layer
 from pliant.scene.scene import Scene
+from pliant.studio.commands.opening import enter
 from pliant.studio.faces import example_photograph, face_layer, face_scene, looked_at, missing, photograph_of
 from pliant.studio.frames import Frame
 from pliant.studio.layering import free_name
@@ -88,11 +89,8 @@ def handles(session: Session, request: Request) -> Frame:
 def _look(session: Session, path: Path, number: int) -> None:
     def done(found: tuple[Scene, int]) -> None:
         scene, count = found
-        textures = [material.texture for material in scene.mesh.material_library.values()]
-        session.readable.update(texture.parent for texture in textures if texture is not None)
-        session.begin(scene, path.stem)
+        enter(session, scene, path.stem, "face")
         session.beside["photograph"] = (path, number, count)
-        session.broadcast(Frame({"event": "enter", "mode": "face"}))
 
     session.jobs.run(path.name, lambda _: face_scene(path, number), done)
 

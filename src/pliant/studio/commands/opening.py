@@ -17,6 +17,7 @@ from pliant.studio.faces import photograph_of
 from pliant.studio.files import CHUNK, inside
 from pliant.studio.frames import Frame
 from pliant.studio.request import Request, command
+from pliant.studio.sample_scenes import SCENES
 from pliant.studio.samples import sample
 from pliant.studio.session import Session
 from pliant.studio.shape_models import model_scene
@@ -69,9 +70,13 @@ def open_path(session: Session, request: Request) -> Frame:
 
 @command("open.example")
 def open_example(session: Session, request: Request) -> None:
-    """A shape of the start page."""
+    """A shape or a scene of the start page."""
     name = request.text("name")
-    session.begin(Scene(sample(name)), name.capitalize())
+    if name not in SCENES:
+        session.begin(Scene(sample(name)), name.capitalize())
+        return
+    found = SCENES[name]
+    session.jobs.run(found.title, lambda _: found.make(), lambda scene: enter(session, scene, found.title, found.mode))
 
 
 @command("open.recover")
@@ -121,6 +126,13 @@ def listing(session: Session, request: Request) -> Frame:
     return Frame({"folders": folders, "files": files[:_MOST_ENTRIES]})
 
 
+def enter(session: Session, scene: Scene, name: str, mode: str) -> None:
+    """Show a scene in the mode that it is for; empty = in the one that each page is in."""
+    session.begin(scene, name)
+    if mode:
+        session.broadcast(Frame({"event": "enter", "mode": mode}))
+
+
 def read_scene(path: Path) -> Scene:
     """The scene of a project, of a shape model, or of a mesh.
 
@@ -162,9 +174,7 @@ def main_file(paths: list[Path]) -> Path:
 
 
 def _open(session: Session, path: Path, name: str) -> Frame:
-    session.begin(read_scene(path), name)
-    if holds_model(path):
-        session.broadcast(Frame({"event": "enter", "mode": "model"}))
+    enter(session, read_scene(path), name, "model" if holds_model(path) else "")
     return Frame({"notes": []})
 
 

@@ -32,7 +32,7 @@ export const COMMON = {
     "Control many points with few: wrap a lattice around a mesh, drag its control points, and the mesh follows.",
     "以少控多：用晶格包住网格，拖动控制点，网格随之变形。",
   ],
-  dropHere: ["Drop a mesh, a project or an .FFD here", "将网格、项目或 .FFD 文件拖到此处"],
+  dropHere: ["Drop a mesh, a photograph, a model, a project or an .FFD here", "将网格、照片、模型、项目或 .FFD 文件拖到此处"],
   dropDetail: ["An OBJ may come with its .mtl and textures", "OBJ 可与其 .mtl 和贴图一起拖入"],
   chooseFile: ["Choose files", "选择文件"],
   examples: ["Examples", "示例"],

@@ -29,6 +29,7 @@ class FaceMode implements Mode {
   private shown = true;
   private settled = false;
   private mesh: number | null = null;
+  private upBefore: "y" | "z" | null = null;
   private stops: (() => void)[] = [];
   private facts: FaceFacts = { missing: "", example: false, number: 0, count: 1, least: 1, folds: false };
   private readonly side: FacePanel;
@@ -43,6 +44,7 @@ class FaceMode implements Mode {
       },
       handles: () => void this.addHandles(),
     });
+    studio.meshLoaded.onChange(() => this.turnBack());
   }
 
   /** The caricature: of the active layer, or the first there is. */
@@ -90,8 +92,18 @@ class FaceMode implements Mode {
     const id = scene?.mesh?.id ?? null;
     if (!this.layer || id === this.mesh) return;
     this.mesh = id;
-    if (settings.now.up !== "y") settings.change({ up: "y" });
+    if (settings.now.up !== "y") {
+      this.upBefore = settings.now.up;
+      settings.change({ up: "y" });
+    }
     this.studio.frame(undefined, new Vector3(0.3, 0.12, 1));
+  }
+
+  /** Other shapes stand as they did before a face came. */
+  private turnBack(): void {
+    if (this.layer || this.upBefore === null) return;
+    this.studio.settings.change({ up: this.upBefore });
+    this.upBefore = null;
   }
 
   private refresh(): void {
