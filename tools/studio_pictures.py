@@ -1,4 +1,4 @@
-"""Draws the pictures of the studio's page in the documentation: python tools/studio_pictures.py (needs chromium)."""
+"""Draws the studio's pictures in the documentation: python tools/studio_pictures.py [NAME ...] (needs chromium)."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import shutil
 import sys
 import tempfile
 import time
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -14,29 +15,50 @@ from PIL import Image
 
 import pliant as pl
 from pliant.studio.launching import launch
+from pliant.studio.sample_scenes import astronaut, varying_head
 from pliant.studio.samples import torus
 
 OUT = Path(__file__).parents[1] / "docs" / "pictures"
 FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
 
 
-def main() -> None:
-    """Draw them all."""
+def main(names: list[str]) -> None:
+    """Draw those that are named, or all."""
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=FLAGS)
+        for name, draw in PICTURES.items():
+            if not names or name in names:
+                draw(browser)
+        browser.close()
+
+
+@contextmanager
+def shown(browser, scene: pl.Scene, name: str, mode: str, size=(1280, 800), scale=1.5):
+    """A page on a scene, in a mode."""
+    with tempfile.TemporaryDirectory() as folder:
+        studio = launch(scene, name, port=0, autosave=Path(folder))
+        studio.start()
+        page = browser.new_page(viewport={"width": size[0], "height": size[1]}, device_scale_factor=scale)
+        page.goto(f"{studio.url}&guides=off")
+        wait(page, "window.pliantStudio && document.querySelector('.start').hidden")
+        page.evaluate(f"window.pliantStudio.mode('{mode}')")
+        yield page
+        page.close()
+        studio.stop()
+
+
+def lattices(browser) -> None:
+    """Control points of a lattice, its field, and a clip of a drag."""
     mesh = torus(120, 52)
     lattice = pl.BSplineFFD.around(mesh, shape=(5, 5, 3), margin=0.08)
     controls = np.array(lattice.rest)
     controls[4, 3, 2] += [0.45, 0.3, 0.55]
     controls[0, 1, 2] += [-0.1, 0.0, 0.35]
     scene = pl.Scene(mesh, pl.Stack([pl.Layer("Lattice", lattice.moved(controls))]))
-    from playwright.sync_api import sync_playwright
-
-    with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:
-        studio = launch(scene, "torus", port=0, autosave=Path(folder))
-        studio.start()
-        browser = playwright.chromium.launch(executable_path=shutil.which("chromium"), args=FLAGS)
-        page = browser.new_page(viewport={"width": 1280, "height": 800}, device_scale_factor=1.5)
-        page.goto(f"{studio.url}&guides=off")
-        wait(page, "window.pliantStudio && window.pliantStudio.controlPoint(0) !== null")
+    with shown(browser, scene, "torus", "points") as page:
+        wait(page, "window.pliantStudio.controlPoint(0) !== null")
         at = page.evaluate("window.pliantStudio.controlPoint(71)")
         page.mouse.click(at["x"], at["y"])
         save(page, "studio")
@@ -46,13 +68,37 @@ def main() -> None:
         time.sleep(2)
         page.get_by_label("Colour").scroll_into_view_if_needed()
         save(page, "studio-field")
-        page.close()
-        page = browser.new_page(viewport={"width": 900, "height": 600})
-        page.goto(f"{studio.url}&guides=off")
-        wait(page, "window.pliantStudio && window.pliantStudio.controlPoint(0) !== null")
+    with shown(browser, scene, "torus", "points", (900, 600), 1.0) as page:
+        wait(page, "window.pliantStudio.controlPoint(0) !== null")
         clip(page)
-        browser.close()
-        studio.stop()
+
+
+def models(browser) -> None:
+    """A model of a head with three landmarks, two of them moved: the posterior and its uncertainty."""
+    scene = varying_head()
+    shape = scene.stack["Shape model"].deformer
+    points = shape.model.mean
+    for direction in ((0.2, -1, 0.25), (-0.7, -0.7, 0.1), (0.1, -0.4, 1)):
+        shape = shape.with_landmark(int(np.argmax(points @ direction)))
+    moved = np.array([[0.25, -0.35, 0.1], [0, 0, 0], [-0.1, 0, 0.2]]) + shape.positions
+    shape = shape.moved(np.concatenate([np.zeros(shape.model.count), moved.reshape(-1)]))
+    with shown(browser, scene.replace(stack=pl.Stack([pl.Layer("Shape model", shape)])), "head", "model") as page:
+        wait(page, "window.pliantStudio.probes.model.painted()")
+        page.evaluate("window.pliantStudio.look(0.35, -1, 0.25)")
+        time.sleep(1)
+        save(page, "studio-model", (1000, 625))
+
+
+def faces(browser) -> None:
+    """The astronaut's face, and its caricature."""
+    scene = astronaut()
+    made = scene.stack["Caricature"].deformer.moved([0.8, 1, 1.2, 1.6, 1.1, 1, 1, 1])
+    with shown(browser, scene.replace(stack=pl.Stack([pl.Layer("Caricature", made)])), "astronaut", "face") as page:
+        wait(page, "window.pliantStudio.probes.face.ready()")
+        page.get_by_label("Landmarks").uncheck()
+        page.get_by_label("Caricature –").scroll_into_view_if_needed()
+        time.sleep(2)
+        save(page, "studio-face", (1000, 625))
 
 
 def wait(page, script: str) -> None:
@@ -65,10 +111,10 @@ def wait(page, script: str) -> None:
     sys.exit(f"never: {script}")
 
 
-def save(page, name: str) -> None:
-    """A screenshot, at two thirds of the pixels that it was taken in: smooth, and small enough to be kept."""
+def save(page, name: str, size=(1280, 800)) -> None:
+    """A screenshot, at two thirds of the pixels that it was taken in or less: smooth, and small enough to be kept."""
     picture = Image.open(io.BytesIO(page.screenshot())).convert("RGB")
-    picture.resize((1280, 800), Image.Resampling.LANCZOS).save(OUT / f"{name}.png", optimize=True)
+    picture.resize(size, Image.Resampling.LANCZOS).save(OUT / f"{name}.png", optimize=True)
 
 
 def clip(page) -> None:
@@ -87,5 +133,7 @@ def clip(page) -> None:
     frames[0].save(OUT / "studio.gif", save_all=True, append_images=frames[1:], duration=80, loop=0, optimize=True)
 
 
+PICTURES = {"lattices": lattices, "models": models, "faces": faces}
+
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1:])
