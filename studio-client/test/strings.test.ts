@@ -1,5 +1,6 @@
 import { expect, test } from "vitest";
-import { ALL_KEYS, inLanguages, setLanguage, t } from "../src/core/strings";
+import { ALL_KEYS, inLanguages, setLanguage, t, term } from "../src/core/strings";
+import { FIELDS } from "../src/core/strings/terms";
 
 test("every string is there in both languages", () => {
   for (const key of ALL_KEYS) {
@@ -21,7 +22,15 @@ test("no string is left over", () => {
     .filter(([name]) => !name.endsWith("strings.ts"))
     .map(([, text]) => text)
     .join("\n");
-  const made = ["did_", "quantity_", "unit", "profile_", "kind_", "handle_", "take_", "field_", "easing_", "coordinates_"]; // keys that are put together
+  const made = ["did_", "quantity_", "unit", "profile_", "kind_", "handle_", "take_", "field_", "easing_", "coordinates_", "face_", "kernel_"]; // keys that are put together
   const unused = ALL_KEYS.filter((key) => !made.some((start) => key.startsWith(start)) && !sources.includes(`"${key}"`));
   expect(unused).toEqual([]);
+});
+
+test("words of the library have another language where one is known", () => {
+  expect(term(FIELDS, "origin")).toBe("origin");
+  setLanguage("zh-CN");
+  expect(term(FIELDS, "origin")).toBe("原点");
+  expect(term(FIELDS, "of_a_new_deformer")).toBe("of a new deformer");
+  setLanguage("en");
 });

@@ -2,7 +2,8 @@
 
 import { h, replace } from "../core/dom";
 import { icon } from "../core/icons";
-import { t, type StringKey } from "../core/strings";
+import { t, term, type StringKey } from "../core/strings";
+import { KINDS } from "../core/strings/terms";
 import type { Studio } from "../studio";
 import type { Kind } from "../transport/protocol";
 import { newExtended } from "./extended_dialog";
@@ -37,8 +38,8 @@ export function chooseDeformer(studio: Studio, anchor: HTMLElement): void {
 
 /** Those whose name begins with a word, then those whose name holds it, then those whose description does. */
 function found(kinds: Kind[], word: string): Kind[] {
-  const rank = ({ title, summary }: Kind): number => {
-    const at = title.toLowerCase().indexOf(word);
+  const rank = ({ name, title, summary }: Kind): number => {
+    const at = Math.max(title.toLowerCase().indexOf(word), term(KINDS, name, title).toLowerCase().indexOf(word));
     return at === 0 ? 0 : at > 0 ? 1 : summary.toLowerCase().includes(word) ? 2 : 3;
   };
   return kinds.filter((kind) => rank(kind) < 3).sort((a, b) => rank(a) - rank(b));
@@ -62,7 +63,7 @@ function item(studio: Studio, kind: Kind, close: () => void): HTMLElement {
   return h(
     "button",
     { class: "menu-item", type: "button", role: "menuitem", onclick: choose, "data-kind": kind.name },
-    h("span", { class: "menu-item-title" }, kind.title),
+    h("span", { class: "menu-item-title" }, term(KINDS, kind.name, kind.title)),
     h("span", { class: "muted" }, kind.summary),
   );
 }

@@ -2,7 +2,8 @@
 
 import { h, replace } from "../core/dom";
 import { icon } from "../core/icons";
-import { t } from "../core/strings";
+import { t, term } from "../core/strings";
+import { KINDS } from "../core/strings/terms";
 import { LayerDrag } from "../modes/layer_drag";
 import type { Studio } from "../studio";
 import type { Layer } from "../transport/protocol";
@@ -63,7 +64,7 @@ function row(studio: Studio, layer: Layer): HTMLElement {
       onclick: () => studio.activeLayer.set(layer.name),
     },
     h("span", { class: "grip" }, icon("grip", 14) as unknown as Node),
-    h("div", { class: "layer-text" }, name, h("span", { class: "layer-kind" }, layer.title)),
+    h("div", { class: "layer-text" }, name, h("span", { class: "layer-kind" }, term(KINDS, layer.kind, layer.title))),
     solo,
     mute,
     iconButton("trash", t("remove"), () => ask("layers.remove", {})),

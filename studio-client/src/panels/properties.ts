@@ -1,7 +1,8 @@
 // The properties of a layer, generated from its deformer's fields: a new deformer needs no line here.
 
 import { h, replace } from "../core/dom";
-import { t } from "../core/strings";
+import { t, term } from "../core/strings";
+import { CHOICES, FIELDS } from "../core/strings/terms";
 import { LayerDrag } from "../modes/layer_drag";
 import type { Studio } from "../studio";
 import type { FieldValue, Layer } from "../transport/protocol";
@@ -40,13 +41,13 @@ function fieldRow(studio: Studio, layer: Layer, field: FieldValue): HTMLElement 
 }
 
 function editor(studio: Studio, layer: Layer, field: FieldValue, set: (value: unknown) => void): HTMLElement {
-  const label = field.name.replaceAll("_", " ");
+  const label = term(FIELDS, field.name);
   const { value } = field;
   if (field.editable) {
     if (typeof value === "number") return row(label, number(studio, layer, field, value, set));
     if (typeof value === "boolean") return checkbox(label, value, set);
     if (field.type === "choice" && field.choices.length) {
-      return row(label, select(field.choices.map((word) => [word, word] as const), String(value), set, label));
+      return row(label, select(field.choices.map((word) => [word, term(CHOICES, word, word)] as const), String(value), set, label));
     }
     if (field.type === "axis" && typeof value === "string") {
       return row(label, select((["x", "y", "z"] as const).map((axis) => [axis, axis] as const), value as "x", set, label));
@@ -66,7 +67,7 @@ function editor(studio: Studio, layer: Layer, field: FieldValue, set: (value: un
 /** A number: a slider that previews, where a range is known, and a field for any value. */
 function number(studio: Studio, layer: Layer, field: FieldValue, value: number, set: (value: number) => void): HTMLElement {
   const scale = field.type === "angle" ? 1 / DEGREE : 1;
-  const label = field.name.replaceAll("_", " ");
+  const label = term(FIELDS, field.name);
   const entry = numberField(value * scale, (next) => set(next / scale), {
     label,
     integer: field.type === "integer",

@@ -14,8 +14,9 @@ import type { Strings } from "./strings";
 import { TIME } from "./time";
 import { SURFACE } from "./surface";
 import { TOUR } from "./tour";
+import { TRANSFER } from "./transfer";
 
-const TABLE = { ...COMMON, ...FACE, ...MODEL, ...AXIAL, ...CAGE, ...EXTENDED, ...POINTS, ...SITES, ...TIME, ...SURFACE, ...TOUR } as const satisfies Strings;
+const TABLE = { ...COMMON, ...FACE, ...MODEL, ...AXIAL, ...CAGE, ...EXTENDED, ...POINTS, ...SITES, ...TIME, ...SURFACE, ...TOUR, ...TRANSFER } as const satisfies Strings;
 
 export type StringKey = keyof typeof TABLE;
 
@@ -34,6 +35,11 @@ export function t(key: StringKey): string {
 export function tWord(prefix: string, word: string): string {
   const key = `${prefix}${word}`;
   return key in TABLE ? t(key as StringKey) : word;
+}
+
+/** A word of the library, in the language of the page where that has one. */
+export function term(words: Readonly<Record<string, string>>, word: string, english = word.replaceAll("_", " ")): string {
+  return column === 0 ? english : (words[word] ?? english);
 }
 
 export const ALL_KEYS = Object.keys(TABLE) as StringKey[];
