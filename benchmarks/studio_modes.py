@@ -11,12 +11,15 @@ import time
 import numpy as np
 
 import pliant.studio.commands  # noqa: F401
+from pliant.cages.boxes import cage_from_box
 from pliant.scene.layer import Layer
 from pliant.scene.scene import Scene
 from pliant.scene.stack import Stack
 from pliant.shape.conditioned_model import ConditionedModel
 from pliant.shape.kernels import GaussianKernel
 from pliant.shape.model import ShapeModel
+from pliant.space.bend import Bend
+from pliant.space.cage import Cage
 from pliant.studio.frames import Frame
 from pliant.studio.samples import torus
 from pliant.studio.session import Session
@@ -68,7 +71,32 @@ def posterior():
     return dragged(scene, {"layer": "Shape model"}, moves, "model")
 
 
-LINES = {"posterior: rank 100, 50k vertices, 6 landmarks": (posterior, 30)}
+def caged(chosen, coordinates="mean_value"):
+    """Vertices of a cage of 152 around 200k points."""
+    mesh = torus(640, 313)
+    cage = Cage(cage_from_box(mesh, (5, 5, 5)), coordinates=coordinates)
+    index = np.arange(chosen, dtype=np.uint32)
+    moves = [({}, {"index": index, "positions": cage.rest[index] + [0, 0, 0.005 * step]}) for step in range(MOVES)]
+    return dragged(Scene(mesh, Stack((Layer("Cage", cage),))), {"layer": "Cage"}, moves, "drag")
+
+
+def bent():
+    """The angle of a bend on 200k points, by its handle on the canvas."""
+    mesh = torus(640, 313)
+    bend = Bend.around(mesh, axis="y")
+    eye = np.array([0.0, -9.0, 4.0])
+    rays = [np.array([-1.2, 0.0, 0.02 * step]) - eye for step in range(MOVES)]
+    moves = [({"ray": [*eye.tolist(), *ray.tolist()], "snap": False}, {}) for ray in rays]
+    return dragged(Scene(mesh, Stack((Layer("Bend", bend),))), {"layer": "Bend", "handle": "angle"}, moves, "axial")
+
+
+LINES = {
+    "cage: 152 vertices, 200k points, one moved": (lambda: caged(1), 30),
+    "cage: 152 vertices, 200k points, a quarter moved": (lambda: caged(38), 30),
+    "cage: the same by Green coordinates, one moved": (lambda: caged(1, "green"), 30),
+    "bend: 200k points, by its handle": (bent, 20),
+    "posterior: rank 100, 50k vertices, 6 landmarks": (posterior, 30),
+}
 
 
 def main(words):

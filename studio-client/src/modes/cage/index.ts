@@ -138,6 +138,7 @@ class CageMode extends PointsMode {
     if (key !== this.loaded) {
       this.loaded = key;
       this.fill();
+      this.planes.show(points === null);
       void this.fetch(points);
     }
     if (points) faces?.move(points.now);

@@ -13,6 +13,7 @@ export class Planes {
   private from: Pointer | null = null;
   private readonly latest = new Latest<null>(() => this.fetch());
   private shown = false;
+  private wanted = true;
 
   constructor(
     private readonly studio: Studio,
@@ -71,9 +72,10 @@ export class Planes {
     this.line.hidden = true;
   }
 
-  /** Show the rings of the planes so far, or nothing. */
-  show(): void {
-    if (this.plans.now.method === "cuts" && this.plans.now.cuts.length) this.latest.push(null);
+  /** Show the rings of the planes so far, or nothing: where there is a cage, they have done their part. */
+  show(wanted = this.wanted): void {
+    this.wanted = wanted;
+    if (wanted && this.plans.now.method === "cuts" && this.plans.now.cuts.length) this.latest.push(null);
     else {
       this.hide();
       this.tell("");
@@ -94,7 +96,7 @@ export class Planes {
 
   private async fetch(): Promise<void> {
     const answer = await this.studio.ask("cage.sketch", ...this.plans.asked);
-    if (!answer || this.plans.now.method !== "cuts" || !this.line.isConnected) return;
+    if (!answer || !this.wanted || this.plans.now.method !== "cuts" || !this.line.isConnected) return;
     this.studio.field.setPreview(answer.arrays["points"] as Float32Array, answer.arrays["links"] as Uint32Array);
     this.shown = true;
     this.tell(answer.head["message"] as string);
