@@ -7,8 +7,9 @@ import type { Studio } from "../studio";
 import type { Frame } from "../transport/frame";
 import { button, checkbox, numberField, row, segments, select } from "./controls";
 import { openDialog } from "./dialog";
+import { motionPane } from "./motion_export";
 
-type Tab = "mesh" | "transform" | "field" | "picture";
+type Tab = "mesh" | "motion" | "transform" | "field" | "picture";
 
 export function openExport(studio: Studio, tab: Tab = "mesh"): void {
   if (!studio.scene?.mesh) return;
@@ -24,12 +25,13 @@ export function openExport(studio: Studio, tab: Tab = "mesh"): void {
   };
   const panes: Record<Tab, () => HTMLElement> = {
     mesh: () => meshPane(studio, deliver),
+    motion: () => motionPane(studio, report),
     transform: () => transformPane(studio, deliver),
     field: () => fieldPane(deliver),
     picture: () => picturePane(studio),
   };
   const tabs = segments<Tab>(
-    [["mesh", t("exportMesh")], ["transform", t("exportTransform")], ["field", t("exportField")], ["picture", t("exportPicture")]],
+    [["mesh", t("exportMesh")], ["motion", t("exportMotion")], ["transform", t("exportTransform")], ["field", t("exportField")], ["picture", t("exportPicture")]],
     tab,
     show,
   );

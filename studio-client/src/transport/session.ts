@@ -46,10 +46,12 @@ export class Session {
     return answer;
   }
 
-  on(event: string, listener: Listener): void {
+  /** Listen to an event; gives what ends that. */
+  on(event: string, listener: Listener): () => void {
     const set = this.listeners.get(event) ?? new Set();
     set.add(listener);
     this.listeners.set(event, set);
+    return () => set.delete(listener);
   }
 
   close(): void {

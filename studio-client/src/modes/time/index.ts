@@ -2,6 +2,7 @@
 
 import type { TourStep } from "../../panels/tour";
 import { openExport } from "../../panels/export_dialog";
+import { openTemplates } from "../../panels/templates/gallery";
 import type { Studio } from "../../studio";
 import { registerMode, type Mode, type Probe } from "../mode";
 import { ClipModel } from "./clip_model";
@@ -32,8 +33,8 @@ class TimeMode implements Mode {
     this.placer = new Placer(studio);
     this.tools = new TimeTools(this.model, this.placer, this.ghosts);
     this.timeline = new Dock(this.model, {
-      templates: () => undefined,
-      film: () => openExport(studio),
+      templates: () => void openTemplates(studio, this.model.player.time.value),
+      film: () => openExport(studio, "motion"),
       pin: (on) => studio.pinned.set(on ? this.timeline.element : null),
     });
   }

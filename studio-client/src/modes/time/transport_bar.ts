@@ -64,8 +64,8 @@ export class TransportBar {
       select([["once", t("timeOnce")], ["loop", t("timeLoop")], ["ping-pong", t("timePingPong")]], ending, (value) => set({ ending: value }), t("timeEnding")),
       this.pace,
       h("span", { class: "spacer" }),
-      button(t("templates"), this.actions.templates, { icon: "template", kind: "quiet" }),
-      button(t("timeFilm"), this.actions.film, { icon: "film", kind: "quiet" }),
+      this.command("template", t("templates"), this.actions.templates),
+      this.command("film", t("timeFilm"), this.actions.film),
       toggle("pin", t("timePin"), pinned, this.actions.pin),
     );
     this.showPlaying(player.playing.value);
@@ -77,6 +77,13 @@ export class TransportBar {
     const { player } = this.model;
     if (this.seconds) setNumber(this.seconds, Number(player.time.value.toFixed(4)));
     if (this.frame) setNumber(this.frame, player.frameAt(player.time.value));
+  }
+
+  /** A button whose word makes room where there is little. */
+  private command(icon: "template" | "film", label: string, run: () => void): HTMLElement {
+    const each = button(label, run, { icon, kind: "quiet" });
+    each.title = each.ariaLabel = label;
+    return each;
   }
 
   private rate(fps: number, set: (fps: number) => void): HTMLElement {
