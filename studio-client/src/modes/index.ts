@@ -7,6 +7,7 @@ import "./surface";
 import "./axial";
 import "./sites";
 import "./cage";
+import "./transfer";
 import "./model";
 import "./face";
 import "./time";

@@ -11,6 +11,7 @@ import {
   Mesh,
   Points,
   PointsMaterial,
+  Vector3,
   type Material,
 } from "three";
 import type { Numbers } from "../transport/frame";
@@ -68,6 +69,11 @@ export class MeshView {
   /** The mesh's point that a drawn vertex stands for. */
   pointOf(vertex: number): number {
     return vertex < this.count ? vertex : this.twins[vertex - this.count]!;
+  }
+
+  /** The normal at a point, as it is drawn. */
+  normalAt(point: number): Vector3 {
+    return new Vector3().fromArray(this.normal.array as Int8Array, 4 * point).normalize();
   }
 
   get target(): Mesh {

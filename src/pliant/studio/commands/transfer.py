@@ -148,9 +148,11 @@ def compute(session: Session, request: Request) -> None:
 
 @command("transfer.keys")
 def keys(session: Session, request: Request) -> Frame:
-    """The poses of a layer, and how much there is of each."""
+    """The poses of a layer, and how much there is of each; the source in the same mixture."""
     found = _keys(session, request.text("layer"))
-    return Frame({"names": list(found.names), "weights": found.controls.tolist()})
+    weights = found.controls.tolist()
+    head = {"names": list(found.names), "weights": weights}
+    return Frame(head, _source_in(session, dict(zip(found.names, weights, strict=True))))
 
 
 @command("transfer.begin")
