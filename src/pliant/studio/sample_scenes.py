@@ -2,15 +2,26 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 
+import numpy as np
+
+from pliant.cages.boxes import cage_from_box
 from pliant.mesh import PolygonMesh
+from pliant.scene.layer import Layer
 from pliant.scene.scene import Scene
+from pliant.scene.stack import Stack
 from pliant.shape.kernels import GaussianKernel
 from pliant.shape.model import ShapeModel
+from pliant.shape.surface_samples import surface_samples
+from pliant.space.bend import Bend
+from pliant.space.cage import Cage
+from pliant.space.dirichlet_ffd import DirichletFFD
+from pliant.space.twist import Twist
 from pliant.studio.faces import example_photograph, face_scene
-from pliant.studio.samples import egg
+from pliant.studio.samples import bar, egg, textured_vase
 from pliant.studio.shape_models import model_scene
 
 
@@ -54,7 +65,37 @@ def astronaut() -> Scene:
     return face_scene(photograph)[0]
 
 
+def bent_bar() -> Scene:
+    """A bar that is twisted, then bent: two layers along its axis."""
+    mesh = bar()
+    twist = Twist.around(mesh, axis="x", angle=math.pi / 2, profile="smooth")
+    bend = Bend.around(mesh, axis="y", angle=0.6 * math.pi)
+    return Scene(mesh, Stack((Layer("Twist", twist), Layer("Bend", bend))))
+
+
+def sited_egg() -> Scene:
+    """An egg with sites all over it, one of them pulled."""
+    mesh = egg()
+    sites = DirichletFFD(surface_samples(mesh, 30, "farthest"), smooth=True)
+    controls = np.array(sites.rest)
+    controls[int(np.argmin(controls[:, 1] + abs(controls[:, 2])))] += [0.0, -0.35, 0.1]
+    return Scene(mesh, Stack((Layer("Sites", sites.moved(controls)),)))
+
+
+def caged_vase() -> Scene:
+    """A vase in a box of four storeys, the upper ones leaning."""
+    mesh = textured_vase()
+    cage = Cage(cage_from_box(mesh, (1, 1, 4), 0.03))
+    height = (cage.rest[:, 2] - mesh.bounds[0][2]) / (mesh.bounds[1][2] - mesh.bounds[0][2])
+    lean = np.clip(height - 0.4, 0.0, None) ** 2
+    controls = cage.rest + mesh.diagonal * lean[:, None] * [0.55, 0.0, 0.0]
+    return Scene(mesh, Stack((Layer("Cage", cage.moved(controls)),)))
+
+
 SCENES = {
+    "bent-bar": SampleScene("Bent bar", 2440, bent_bar, "axial"),
+    "sited-egg": SampleScene("Egg with sites", 3456, sited_egg, "sites"),
+    "caged-vase": SampleScene("Caged vase", 13920, caged_vase, "cage"),
     "varying-head": SampleScene("Varying head", 72 * 48, varying_head, "model"),
     "astronaut": SampleScene("Astronaut", 6990, astronaut, "face", lambda: example_photograph() is not None),
 }
