@@ -23,6 +23,8 @@ from pliant.space.cage import Cage
 from pliant.studio.frames import Frame
 from pliant.studio.samples import torus
 from pliant.studio.session import Session
+from pliant.surface.arap import ARAP
+from pliant.surface.laplacian_edit import LaplacianEdit
 
 MOVES = 40
 
@@ -90,7 +92,23 @@ def bent():
     return dragged(Scene(mesh, Stack((Layer("Bend", bend),))), {"layer": "Bend", "handle": "angle"}, moves, "axial")
 
 
+def edited(method, around, across):
+    """A handle at one side of a ring whose region is nearly all of it; turned and shifted by the gizmo."""
+    mesh = torus(around, across)
+    x = mesh.points[:, 0]
+    edit = {"arap": ARAP, "laplacian": LaplacianEdit}[method](np.flatnonzero(x > -1.25), np.flatnonzero(x > 1.2))
+    moves = []
+    for step in range(MOVES):
+        angle, matrix = 0.02 * step, np.eye(4)
+        matrix[:2, :2] = [[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]]
+        matrix[2, 3] = 0.01 * step
+        moves.append(({}, {"matrix": matrix.T.reshape(-1)}))
+    return dragged(Scene(mesh, Stack((Layer("Edit", edit),))), {"layer": "Edit", "method": method}, moves, "surface")
+
+
 LINES = {
+    "arap: 35k vertices, by the gizmo": (lambda: edited("arap", 268, 131), 20),
+    "laplacian: a region of 100k, by the gizmo": (lambda: edited("laplacian", 456, 225), 10),
     "cage: 152 vertices, 200k points, one moved": (lambda: caged(1), 30),
     "cage: 152 vertices, 200k points, a quarter moved": (lambda: caged(38), 30),
     "cage: the same by Green coordinates, one moved": (lambda: caged(1, "green"), 30),
