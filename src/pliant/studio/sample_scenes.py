@@ -23,6 +23,10 @@ from pliant.space.twist import Twist
 from pliant.studio.faces import example_photograph, face_scene
 from pliant.studio.samples import bar, egg, textured_vase
 from pliant.studio.shape_models import model_scene
+from pliant.studio.transfer_sample import arm, posed_bar
+from pliant.surface.arap import ARAP
+from pliant.surface.shape_keys import ShapeKeys
+from pliant.surface.transfer import DeformationTransfer
 
 
 @dataclass(frozen=True)
@@ -92,7 +96,29 @@ def caged_vase() -> Scene:
     return Scene(mesh, Stack((Layer("Cage", cage.moved(controls)),)))
 
 
+def raised_arm() -> Scene:
+    """An arm whose hand is raised, as rigid as possible; region and hand are named selections."""
+    mesh = arm()
+    region, hand = (np.flatnonzero(mesh.points[:, 0] > start) for start in (-0.9, 1.45))
+    angle = 0.9
+    turn = np.array([[math.cos(angle), 0, -math.sin(angle)], [0, 1, 0], [math.sin(angle), 0, math.cos(angle)]])
+    goal = (mesh.points[hand] - [0.4, 0, 0]) @ turn.T + [0.3, 0, 0.25]
+    edit = Layer("Edit", ARAP(region, hand, goal=goal))
+    return Scene(mesh, Stack((edit,)), selections={"arm": region, "hand": hand})
+
+
+def posed_arm() -> Scene:
+    """An arm in the poses of a bar, as shape keys."""
+    mesh = arm()
+    bench = posed_bar(mesh)
+    clone = DeformationTransfer(bench.source, mesh, np.array(bench.markers))
+    moves = np.stack([clone.points(pose) - mesh.points for pose in bench.poses.values()])
+    return Scene(mesh, Stack((Layer("Poses", ShapeKeys(moves, tuple(bench.poses), [1.0, 0.0, 0.0])),)))
+
+
 SCENES = {
+    "raised-arm": SampleScene("Raised arm", 1234, raised_arm, "surface"),
+    "posed-arm": SampleScene("Arm with poses", 1234, posed_arm, "transfer"),
     "bent-bar": SampleScene("Bent bar", 2440, bent_bar, "axial"),
     "sited-egg": SampleScene("Egg with sites", 3456, sited_egg, "sites"),
     "caged-vase": SampleScene("Caged vase", 13920, caged_vase, "cage"),
