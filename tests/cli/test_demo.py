@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 
 import pliant as pl
 from pliant.errors import MissingExtra
@@ -25,17 +26,26 @@ def test_makes_a_shape_a_transform_and_pictures(run, tmp_path):
     assert swayed.edge_use == vase.edge_use == (0, 0)
     for name in ("before.png", "after.png", "grid.png", "glaze.png"):
         assert (tmp_path / name).read_bytes().startswith(PNG)
+    wrung = pl.read(tmp_path / "vase-wrung.obj")
+    assert pl.volume(wrung) == pytest.approx(pl.volume(vase), rel=2e-3)  # it is wrung and squeezed, and none is lost
+    motion = pl.read_sequence(tmp_path / "dance.glb")
+    assert np.allclose([motion.points[0].min(axis=0), motion.points[0].max(axis=0)], vase.bounds, atol=1e-4)
+    assert np.ptp(motion.points, axis=0).max() > 20
+    with Image.open(tmp_path / "dance.gif") as dance:
+        assert dance.n_frames == 16
     assert "Try next" in result.stderr
     assert (tmp_path / "before.png").read_bytes() != (tmp_path / "after.png").read_bytes()
 
 
 def test_goes_without_pictures_where_nothing_can_draw(run, tmp_path, monkeypatch):
     from pliant.rendering import pictures
+    from pliant.scene.animation import film
 
     def missing(*args, **kwargs):
         raise MissingExtra("drawing", "render")
 
     monkeypatch.setattr(pictures, "render", missing)
+    monkeypatch.setattr(film, "draw_film", missing)
     result = run("demo", "-o", tmp_path, "--json", "-q")
     assert result.exit_code == 0
     assert "pliant[render]" in result.stderr
@@ -44,12 +54,16 @@ def test_goes_without_pictures_where_nothing_can_draw(run, tmp_path, monkeypatch
 
 def test_what_the_demo_suggests_can_be_done(run, tmp_path, monkeypatch):
     from pliant.rendering import pictures
+    from pliant.scene.animation import film
 
     monkeypatch.setattr(pictures, "render", lambda mesh, deformer, path, **options: Path(path).write_bytes(PNG))
+    monkeypatch.setattr(
+        film, "draw_film", lambda mesh, frames, **options: [np.zeros((8, 8, 3), np.uint8)] * len(frames)
+    )
     result = run("demo", "-o", tmp_path)
     commands = [line.split()[1:] for line in result.stderr.splitlines() if line.startswith("  pliant ")]
-    assert [words[0] for words in commands] == ["info", "deform", "render", "deform"]
-    for words in commands:
+    assert [words[0] for words in commands] == ["info", "deform", "render", "deform", "animate", "studio"]
+    for words in commands[:-1]:  # the studio stays until it is told to go
         assert run(*words).exit_code == 0, words
     assert np.allclose(pl.read(tmp_path / "back.obj").points, pl.read(tmp_path / "vase.obj").points, atol=1e-6)
 

@@ -1,9 +1,9 @@
-"""``pliant demo``: a shape, a deformation and pictures of them, made on the spot."""
+"""``pliant demo``: a shape, deformations, pictures and an animation of it, made on the spot."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -21,6 +21,8 @@ Try next:
   pliant deform {mesh} --lattice 4x4x4 --move 3,3,3:60,60,40 -o {folder}/pulled.obj
   pliant render {mesh} --ffd {ffd} --show mesh,arrows --color displacement -o {folder}/arrows.png
   pliant deform {swayed} --ffd {ffd} --inverse -o {folder}/back.obj
+  pliant animate bounce {mesh} -o {folder}/bounce.glb
+  pliant studio {mesh} --ffd {ffd}
 """
 
 
@@ -33,19 +35,16 @@ def demo(
 ) -> None:
     """Make a vase, let it dance, and draw it.
 
-    Start here: a mesh, a transform file, the deformed mesh and pictures, with what to try next.
+    Start here: a mesh, a transform file, deformed meshes, pictures and an animation, with what to try next.
     """
     with Session(json=json, quiet=quiet) as session:
-        from pliant.errors import MissingExtra, NoGraphics
-
         mesh, ffd, swayed = output / "vase.obj", output / "sway.FFD", output / "vase-swayed.obj"
         vase = _make(session, mesh, ffd)
         deform_file(session, mesh, swayed, Choice(ffd=ffd))
         made = [mesh, mesh.with_name("vase.mtl"), mesh.with_name("glaze.png"), ffd, swayed]
-        try:
-            made += _draw(session, vase, ffd, output)
-        except (MissingExtra, NoGraphics) as reason:
-            session.warn(f"no pictures: {reason}")
+        made += _wring(session, vase, output)
+        made += _draw(session, vase, ffd, output)
+        made += _dance(session, vase, ffd, output)
         session.result(made=made)
         session.table({path.name: _MEANS.get(path.name, "") for path in made})
         session.say(_NEXT.format(mesh=mesh, ffd=ffd, swayed=swayed, folder=output))
@@ -57,9 +56,12 @@ _MEANS = {
     "glaze.png": "its texture",
     "sway.FFD": "a B-spline lattice of 4 x 4 x 6 control points",
     "vase-swayed.obj": "the vase, deformed: the same polygons, texture and material",
+    "vase-wrung.obj": "the vase, twisted and squeezed: closed forms, no lattice",
     "before.png": "the vase and the lattice at rest",
     "after.png": "both deformed",
     "grid.png": "how space around it is warped",
+    "dance.glb": "the vase dances: for browsers, Blender and game engines",
+    "dance.gif": "the same as a film",
 }
 
 
@@ -82,20 +84,63 @@ def _make(session: Session, mesh: Path, ffd: Path) -> PolygonMesh:
     return read(mesh)
 
 
+def _wring(session: Session, vase: PolygonMesh, folder: Path) -> list[Path]:
+    """Twist the vase, and squeeze its waist at the same volume."""
+    from pliant.io.meshes import write
+    from pliant.space.compose import compose
+    from pliant.space.squash import Squash
+    from pliant.space.twist import Twist
+
+    path = folder / "vase-wrung.obj"
+    write(compose(Squash.around(vase, factor=1.25), Twist.around(vase, profile="smooth", angle=2.0))(vase), path)
+    session.say(f"wrote {path}")
+    return [path]
+
+
 def _draw(session: Session, vase: PolygonMesh, ffd: Path, folder: Path) -> list[Path]:
-    """Pictures before and after, and of the warped space."""
+    """Pictures before and after, and of the warped space, where they can be drawn."""
+    from pliant.errors import MissingExtra, NoGraphics
     from pliant.io.transforms import read_transform
-    from pliant.rendering.pictures import render
+    from pliant.rendering import pictures
 
     bent = read_transform(ffd)
-    pictures = {
+    wanted = {
         "before.png": (bent.moved(bent.rest), ("mesh", "lattice"), "texture"),
         "after.png": (bent, ("mesh", "lattice"), "texture"),
         "grid.png": (bent, ("mesh", "grid"), "displacement"),
     }
     made = []
-    for name, (deformer, show, color) in pictures.items():
-        made.append(folder / name)
-        render(vase, deformer, made[-1], show=show, color=color)
-        session.say(f"drew {made[-1]}")
+    try:
+        for name, (deformer, show, color) in wanted.items():
+            pictures.render(vase, deformer, folder / name, show=show, color=color)
+            made.append(folder / name)
+            session.say(f"drew {made[-1]}")
+    except (MissingExtra, NoGraphics) as reason:
+        session.warn(f"no pictures: {reason}")
+    return made
+
+
+def _dance(session: Session, vase: PolygonMesh, ffd: Path, folder: Path) -> list[Path]:
+    """The vase sways to one side and to the other, for ever; as a film where it can be drawn."""
+    from pliant import examples
+    from pliant.errors import MissingExtra, NoGraphics
+    from pliant.io.transforms import read_transform
+    from pliant.scene.clip import Clip
+    from pliant.scene.layer import Layer
+    from pliant.scene.stack import Stack
+
+    lattice = read_transform(ffd)
+    clip = Clip(vase, Stack((Layer("sway", lattice.moved(lattice.rest)),)), duration=2.0, fps=8, ending="loop")
+    for time, part in ((0.0, 0.0), (0.5, 1.0), (1.0, 0.0), (1.5, -1.0), (2.0, 0.0)):
+        pose = examples.sway(lattice.rest, turn=part, lean=0.15 * part)
+        clip = clip.key("sway", time, {"controls": pose if part else lattice.rest}, "smooth")
+    made = []
+    try:
+        looks: dict[str, dict[str, Any]] = {"dance.glb": {}, "dance.gif": {"size": (480, 560)}}
+        for name, look in looks.items():
+            clip.export(folder / name, **look)
+            made.append(folder / name)
+            session.say(f"wrote {made[-1]}")
+    except (MissingExtra, NoGraphics) as reason:
+        session.warn(f"no film: {reason}")
     return made
