@@ -200,6 +200,7 @@ export class PointsMode implements Mode {
     for (let i = 1; i <= moves; i++) {
       this.step((motion) => motion.translate(by.clone().multiplyScalar(i)));
       await this.drag?.answered();
+      await this.studio.viewport.settled();
     }
     await this.finish();
   }

@@ -15,11 +15,13 @@ export interface PointActions {
 }
 
 const LETTERS = ["i", "j", "k"] as const;
+const READABLE = 100; // milliseconds
 
 export class PointsPanel {
   readonly element = h("div", { class: "points-panel" });
   private position: HTMLElement | null = null;
   private displacement: HTMLElement | null = null;
+  private following: number | null = null;
 
   constructor(private readonly actions: PointActions) {}
 
@@ -47,11 +49,14 @@ export class PointsPanel {
     );
   }
 
-  /** The same selection, elsewhere. */
+  /** The same selection, elsewhere: told as often as somebody can read it. */
   follow(points: ControlPoints): void {
-    if (points.last === null || !this.position || !this.displacement) return;
-    setAll(this.position, points.at(points.last).toArray());
-    setAll(this.displacement, points.displacement(points.last).toArray());
+    this.following ??= window.setTimeout(() => {
+      this.following = null;
+      if (points.last === null || !this.position || !this.displacement) return;
+      setAll(this.position, points.at(points.last).toArray());
+      setAll(this.displacement, points.displacement(points.last).toArray());
+    }, READABLE);
   }
 
   private title(points: ControlPoints): string {

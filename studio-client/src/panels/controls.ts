@@ -99,7 +99,8 @@ export function numberField(value: number, onset: (value: number) => void, optio
   const input = h("input", { type: "text", inputMode: "decimal", "aria-label": options.label, class: "number", spellcheck: false });
   let current = value;
   const show = (): void => {
-    input.value = shortNumber(current);
+    const text = shortNumber(current);
+    if (input.value !== text) input.value = text; // a field that stays as it is need not be drawn again
   };
   const commit = (): void => {
     const typed = Number(input.value.trim().replace(",", "."));

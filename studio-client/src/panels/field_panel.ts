@@ -150,6 +150,7 @@ export class FieldPanel {
   private showColors(paint: Frame | null): void {
     this.painted = null;
     const { mesh } = this.studio;
+    if (!paint && this.legend.element.hidden) return; // nothing to take away
     this.legend.element.hidden = !paint;
     this.rangeRow.hidden = !paint;
     if (!paint) {

@@ -1,6 +1,6 @@
 // The three axes in the corner: they show which way is up, and a click looks along one of them.
 
-import { Vector3 } from "three";
+import { Quaternion, Vector3 } from "three";
 import { t } from "../core/strings";
 import type { Viewport } from "./viewport";
 
@@ -18,8 +18,10 @@ export function axisGizmo(viewport: Viewport): SVGSVGElement {
   const svg = svgElement("svg", { viewBox: `${-SIZE / 2} ${-SIZE / 2} ${SIZE} ${SIZE}`, width: SIZE, height: SIZE });
   svg.setAttribute("class", "axis-gizmo");
   const balls = ["x", "y", "z"].flatMap((axis, i) => [1, -1].map((sign) => ball(viewport, axis, i, sign)));
+  const shown = new Quaternion(0, 0, 0, 0);
   const follow = (): void => {
-    const inverse = viewport.camera.quaternion.clone().invert();
+    if (shown.equals(viewport.camera.quaternion)) return; // most drawings are of another shape, not from elsewhere
+    const inverse = shown.copy(viewport.camera.quaternion).clone().invert();
     const seen = balls.map((each) => ({ each, at: each.direction.clone().applyQuaternion(inverse) }));
     seen.sort((a, b) => a.at.z - b.at.z);
     for (const { each, at } of seen) {

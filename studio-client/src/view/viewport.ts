@@ -82,6 +82,17 @@ export class Viewport {
     });
   }
 
+  /** When what has been asked for is drawn. */
+  settled(): Promise<void> {
+    if (!this.asked) return Promise.resolve();
+    return new Promise((resolve) => {
+      const stop = this.drawn.onChange(() => {
+        stop();
+        resolve();
+      });
+    });
+  }
+
   draw(): void {
     this.cameras.active.updateMatrixWorld();
     this.lights.quaternion.copy(this.cameras.active.quaternion);
