@@ -15,8 +15,8 @@ from PIL import Image
 
 import pliant as pl
 from pliant.studio.launching import launch
-from pliant.studio.sample_scenes import astronaut, varying_head
-from pliant.studio.samples import torus
+from pliant.studio.sample_scenes import astronaut, bent_bar, caged_vase, raised_arm, sited_egg, varying_head
+from pliant.studio.samples import textured_vase, torus
 
 OUT = Path(__file__).parents[1] / "docs" / "pictures"
 FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
@@ -101,6 +101,89 @@ def faces(browser) -> None:
         save(page, "studio-face", (1000, 625))
 
 
+def bends(browser) -> None:
+    """A bar, twisted and bent, with the handles of the bend."""
+    with shown(browser, bent_bar(), "bar", "axial") as page:
+        wait(page, "window.pliantStudio.probes.axial.names().length > 0")
+        page.evaluate("window.pliantStudio.look(0.55, -1, 0.55)")
+        time.sleep(1)
+        at = page.evaluate("window.pliantStudio.probes.axial.screen('angle')")
+        page.mouse.move(at["x"], at["y"])
+        save(page, "studio-bend", (920, 575))
+
+
+def sites(browser) -> None:
+    """How far one site of an egg reaches."""
+    with shown(browser, sited_egg(), "egg", "sites") as page:
+        wait(page, "window.pliantStudio.probes.sites.count() === 30")
+        page.evaluate("window.pliantStudio.look(-0.7, -1, 0.25)")
+        time.sleep(1)
+        moves = page.evaluate("Array.from({length: 30}, (_, i) => window.pliantStudio.probes.sites.moved(i))")
+        at = page.evaluate(f"window.pliantStudio.probes.sites.screen({int(np.argmax(moves))})")
+        page.mouse.click(at["x"], at["y"])
+        wait(page, "!document.querySelector('.legend').hidden")
+        save(page, "studio-sites", (1000, 625))
+
+
+def rounds(browser) -> None:
+    """A vase in a cylinder, one ring of which is drawn in."""
+    mesh = textured_vase()
+    lattice = pl.ExtendedFFD.cylinder(mesh, shape=(8, 4, 7))
+    ring = lattice.blocks[0].index[:, 3, 4]
+    controls = np.array(lattice.rest)
+    controls[ring] = lattice.rest[ring].mean(axis=0) + 0.35 * (lattice.rest[ring] - lattice.rest[ring].mean(axis=0))
+    scene = pl.Scene(mesh, pl.Stack([pl.Layer("Cylinder", lattice.moved(controls))]))
+    with shown(browser, scene, "vase", "points") as page:
+        wait(page, "window.pliantStudio.controlPoint(0) !== null")
+        page.get_by_label("A click takes").select_option("ring")
+        at = page.evaluate(f"window.pliantStudio.controlPoint({int(ring[6])})")
+        page.mouse.click(at["x"], at["y"])
+        page.locator("canvas").first.focus()
+        page.keyboard.press("s")
+        time.sleep(1)
+        save(page, "studio-rings", (800, 500))
+
+
+def cages(browser) -> None:
+    """A vase in a cage, one face selected, and how far other coordinates lead."""
+    with shown(browser, caged_vase(), "vase", "cage") as page:
+        wait(page, "document.querySelectorAll('.cage-report .good').length === 3")
+        page.get_by_label("A click takes").select_option("face")
+        page.get_by_role("button", name="Compare coordinates").click()
+        wait(page, "document.querySelectorAll('.cage-row').length === 4")
+        at = [page.evaluate(f"window.pliantStudio.probes.cage.screen({index})") for index in (4, 9, 14, 19)]
+        page.mouse.click(np.mean([each["x"] for each in at]), np.mean([each["y"] for each in at]))
+        page.mouse.move(60, 600)
+        time.sleep(1)
+        save(page, "studio-cage", (840, 525))
+
+
+def surfaces(browser) -> None:
+    """A raised arm beside its skeleton, its handle held by the gizmo."""
+    with shown(browser, raised_arm(), "arm", "surface") as page:
+        wait(page, "window.pliantStudio.probes.surface.count('handle') > 0")
+        page.get_by_role("radio", name="Beside").click()
+        page.get_by_role("button", name="(G)").click()
+        wait(page, "window.pliantStudio.probes.surface.nodes().length > 0")
+        page.evaluate("window.pliantStudio.look(0.25, -1, 0.3)")
+        time.sleep(1)
+        save(page, "studio-surface", (1000, 625))
+
+
+def transfers(browser) -> None:
+    """A bar's poses on an arm, with the markers on both."""
+    with shown(browser, pl.Scene(torus()), "arm", "transfer") as page:
+        page.get_by_role("button", name="Try an example").click()
+        wait(page, "window.pliantStudio.probes.transfer.state().markers.length === 16")
+        page.get_by_role("button", name="Transfer the poses").click()
+        wait(page, "window.pliantStudio.probes.transfer.state().ready")
+        page.evaluate("window.pliantStudio.look(-0.3, -1, 0.35)")
+        page.evaluate("window.pliantStudio.probes.transfer.lookAtSource(-0.3, -1, 0.35)")
+        page.get_by_label("bent", exact=True).scroll_into_view_if_needed()
+        time.sleep(2)
+        save(page, "studio-transfer", (1000, 625))
+
+
 def wait(page, script: str) -> None:
     """Until a script is true on the page, and drawn."""
     for _ in range(600):
@@ -133,7 +216,17 @@ def clip(page) -> None:
     frames[0].save(OUT / "studio.gif", save_all=True, append_images=frames[1:], duration=80, loop=0, optimize=True)
 
 
-PICTURES = {"lattices": lattices, "models": models, "faces": faces}
+PICTURES = {
+    "lattices": lattices,
+    "models": models,
+    "faces": faces,
+    "bends": bends,
+    "sites": sites,
+    "rounds": rounds,
+    "cages": cages,
+    "surfaces": surfaces,
+    "transfers": transfers,
+}
 
 if __name__ == "__main__":
     main(sys.argv[1:])

@@ -26,6 +26,7 @@ class SitesMode extends PointsMode {
   readonly probe = {
     screen: (index: number) => this.onPage(index),
     count: () => this.points?.count ?? this.waiting.length / 3,
+    moved: (index: number) => this.points?.displacement(index).length() ?? 0,
     selected: () => [...(this.points?.selected ?? [])],
   };
   private readonly influence: Influence;
