@@ -85,7 +85,7 @@ export class SmallStage {
     this.surface.geometry = motion.geometry;
     const center = motion.box.getCenter(new Vector3());
     const radius = Math.max(motion.box.getSize(new Vector3()).length() / 2, 1e-9);
-    const away = (0.94 * radius) / Math.sin((this.camera.fov * Math.PI) / 360);
+    const away = (0.86 * radius) / Math.sin((this.camera.fov * Math.PI) / 360);
     this.camera.position.copy(center).addScaledVector(this.from, -away);
     this.camera.near = Math.max(away - 2 * radius, away / 100);
     this.camera.far = away + 2 * radius;
