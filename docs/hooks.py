@@ -1,7 +1,7 @@
 """What the site is built from besides its pages: the gallery, run; the reference, from the list of public names.
 
 Nothing is listed by hand: a script put into ``gallery/`` becomes a page with its picture, and a name exported by
-``pliant/__init__.pyi`` becomes an entry of the reference.
+``pliant/__init__.pyi`` becomes an entry of the reference, and so does every deformer.
 """
 
 from __future__ import annotations
@@ -126,11 +126,19 @@ def docstring(script: Path) -> tuple[str, str, str]:
 
 
 def public_names() -> list[tuple[str, str]]:
-    """(module, name) of everything that ``import pliant`` offers."""
+    """(module, name) of everything that ``import pliant`` offers, and of every deformer, listed or not."""
     listed = _imported(ROOT / "src" / "pliant" / "__init__.pyi")
     rooms = [name for module, name in listed if not module]
     inside = [pair for room in rooms for pair in _imported(ROOT / "src" / "pliant" / room / "__init__.py")]
-    return list(dict.fromkeys([pair for pair in listed if pair[0]] + inside))
+    return list(dict.fromkeys([pair for pair in listed if pair[0]] + inside + _deformers()))
+
+
+def _deformers() -> list[tuple[str, str]]:
+    """Every kind of deformer, found as the command line and the studio find it: it exists when its class does."""
+    from pliant.scene.rooms import deformer_classes
+
+    kinds = [kind for kind in deformer_classes().values() if kind.__module__.startswith("pliant.")]
+    return [(kind.__module__.removeprefix("pliant."), kind.__name__) for kind in kinds]
 
 
 def _imported(path: Path) -> list[tuple[str, str]]:

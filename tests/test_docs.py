@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import re
 import shlex
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -108,3 +110,22 @@ def test_both_readmes_give_the_same_commands(marker):
         for name in ("README.md", "README.zh.md")
     )
     assert english == chinese
+
+
+def test_the_deformer_of_the_contributing_page_is_one_file(tmp_path):
+    page = (DOCS.parent / "CONTRIBUTING.md").read_text(encoding="utf-8")
+    (tmp_path / "swirl.py").write_text(re.search(r"```python\n(.*?)```", page, flags=re.S)[1], encoding="utf-8")
+    (tmp_path / "try_it.py").write_text(
+        "import numpy as np\n"
+        "from swirl import Swirl\n"
+        "from pliant.cli.deformer_options import deformers\n"
+        "from pliant.studio.catalogue import _lasting\n"
+        "from pliant.testing import check_deformer\n"
+        "check_deformer(Swirl(bounds=(0.0, 2.0), angle=0.7), np.random.default_rng(0).normal(size=(100, 3)))\n"
+        "assert np.allclose(Swirl(bounds=(0.0, 2.0), angle=0.7)([[50.0, 0.0, 1.0]]), [[50.0, 0.0, 1.0]])\n"
+        "assert deformers()['swirl'] is Swirl\n"
+        "assert 'swirl' in [kind['name'] for kind in _lasting()['kinds']]\n",
+        encoding="utf-8",
+    )
+    done = subprocess.run([sys.executable, "try_it.py"], cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
