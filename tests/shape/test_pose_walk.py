@@ -8,10 +8,9 @@ from pliant.errors import InvalidParameter
 from pliant.numerics.rotations import rotations_of
 from pliant.shape.closest_point_chain import ClosestPointDensity
 from pliant.shape.correspondence import Target
-from pliant.shape.descent import pose_matrix
 from pliant.shape.kernels import GaussianKernel
 from pliant.shape.model import ShapeModel
-from pliant.shape.pose_walk import PoseWalk, exponential_volume, rotation_vector, turning_rate
+from pliant.shape.pose_walk import PoseWalk, exponential_volume, pose_matrix, rotation_vector, turning_rate
 from pliant.shape.procrustes import moved
 from pliant.shape.sampling import Mixture, RandomWalk, metropolis_hastings
 

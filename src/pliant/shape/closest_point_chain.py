@@ -18,10 +18,9 @@ from pliant.mesh import PolygonMesh
 from pliant.shape.basis import Floats
 from pliant.shape.correspondence import Target
 from pliant.shape.densities import remembering
-from pliant.shape.descent import pose_matrix
 from pliant.shape.kernels import positive
 from pliant.shape.linear_model import LinearModel
-from pliant.shape.pose_walk import SIZE, exponential_volume
+from pliant.shape.pose_walk import SIZE, exponential_volume, pose_matrix
 from pliant.shape.procrustes import moved
 from pliant.shape.sampling import NormalProposal
 

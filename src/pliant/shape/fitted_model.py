@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -86,10 +85,14 @@ class FittedModel(ChangeableModel):
         levels: int = 4,
         noise: float | None = None,
         start_noise: float | None = None,
-        pose: Literal["rigid"] | None = None,
+        pose: Pose | None = None,
         loss: Loss = "huber",
+        angle: float = np.pi / 3,
     ) -> Fit:
-        """The model's shape of the least robust distance from a mesh, from coarse to fine: L-BFGS, exact gradients.
+        """The model's shape of the least robust distance from a mesh, from coarse to fine, with exact gradients.
+
+        It has converged when the least energy is within a tenth of a standard deviation of what the target leaves open,
+        as Gauss–Newton's curvature tells; else its status is ``"stopped"``.
 
         Parameters
         ----------
@@ -101,14 +104,15 @@ class FittedModel(ChangeableModel):
             At most so many a level.
         levels
             How many: each has twice the vertices and fields of the one before, and less noise.
-        noise, start_noise, loss
+        noise, start_noise, loss, angle
             As for :meth:`fit`.
         pose
-            ``"rigid"``: the model is moved and turned too, beginning where it lies.
+            ``"rigid"``: the model is moved and turned too, beginning where it lies. ``"similarity"``: scaled as well,
+            beginning in the middle of the target and as large; noise is then in the model's unit of length.
 
         Raises
         ------
-        InvalidParameter, InvalidTarget
+        InvalidParameter, InvalidTarget, NotConverged
             As :meth:`fit`.
         """
         from pliant.shape.descent import descend
@@ -123,4 +127,5 @@ class FittedModel(ChangeableModel):
             start_noise=start_noise,
             pose=pose,
             loss=loss,
+            angle=angle,
         )

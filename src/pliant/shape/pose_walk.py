@@ -78,3 +78,11 @@ def turning_rate(vector: Floats) -> Floats:
         angle = np.sqrt(square)
         one, two = (1 - np.cos(angle)) / square, (angle - np.sin(angle)) / (square * angle)
     return np.asarray(np.eye(3) + one * cross + two * cross @ cross)
+
+
+def pose_matrix(state: Floats, center: Floats, scale: float = 1.0) -> Floats:
+    """(4, 4) the turn about a centre, with a scale, and the shift of a state's first six numbers."""
+    matrix = np.eye(4)
+    matrix[:3, :3] = scale * rotations_of(state[None, :3])[0]
+    matrix[:3, 3] = center + state[3:SIZE] - matrix[:3, :3] @ center
+    return matrix
