@@ -369,7 +369,8 @@ def test_a_lost_connection_is_told_and_the_shape_stays(launched, view):
     page.until("document.querySelector('.link.lost') !== null")
     np.testing.assert_array_equal(page.positions(50), before)
     assert "Trying again" in page.page.locator(".link").inner_text()
-    page.complaints.clear()  # the browser complains that nobody listens
+    page.page.close()
+    page.complaints.clear()  # the browser complains, time and again, that nobody listens
 
 
 def test_a_connection_that_comes_back_shows_what_has_happened_meanwhile(launched, view):
