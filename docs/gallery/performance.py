@@ -18,15 +18,9 @@ SQUASH = {0.0: 1.0, 0.3: 0.72, 0.55: 1.3, 0.8: 1.1, 1.0: 0.72, 1.3: 1.0}
 LEAN = {0.0: 0.0, 0.3: 0.5, 0.55: -0.15, 1.0: 0.35, 1.3: 0.0}
 
 
-def main(out: Path, size: tuple[int, int] = (1750, 700)) -> float:
-    body = figure()
-    stack = pl.Stack(
-        [
-            pl.Layer("squash", pl.Squash.around(body, profile="constant")),
-            pl.Layer("lean", pl.Bend.around(body, axis="x", normal="y", center=0.0)),
-            pl.Layer("jump", pl.Affine()),
-        ]
-    )
+def jump(body: pl.PolygonMesh) -> pl.Clip:
+    squash, lean = pl.Squash.around(body, profile="constant"), pl.Bend.around(body, axis="x", normal="y", center=0.0)
+    stack = pl.Stack([pl.Layer("squash", squash), pl.Layer("lean", lean), pl.Layer("jump", pl.Affine())])
     clip = pl.Clip(body, stack, duration=1.3, fps=24)
     for time, factor in SQUASH.items():
         clip = clip.key("squash", time, {"factor": factor}, "smooth")
@@ -34,7 +28,12 @@ def main(out: Path, size: tuple[int, int] = (1750, 700)) -> float:
         clip = clip.key("lean", time, {"angle": angle}, "smooth")
     clip = clip.key("jump", 0.4, {"controls": pl.Affine().controls})
     clip = clip.key("jump", 0.7, {"controls": pl.Affine.translation([0, 0, 0.9]).controls}, "ease_out")
-    clip = clip.key("jump", 0.95, {"controls": pl.Affine().controls}, "ease_in")
+    return clip.key("jump", 0.95, {"controls": pl.Affine().controls}, "ease_in")
+
+
+def main(out: Path, size: tuple[int, int] = (1750, 700)) -> float:
+    body = figure()
+    clip = jump(body)
     poses = np.stack([clip.sample(time).points for time in (0, 0.3, 0.5, 0.7, 0.9, 1.03, 1.3)])
     pictures = draw_film(body, poses, size=(max(size[0] // 7, 16), size[1]), view=(1, -1.4, 0.35))
     Image.fromarray(np.hstack(list(pictures))).resize(size).save(out / "performance.png", optimize=True)
