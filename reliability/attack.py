@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import argparse
 import collections
+import contextlib
 import http.client
 import json
 import random
@@ -19,7 +20,6 @@ import tempfile
 import threading
 import time
 from collections.abc import Callable, Iterator, Mapping
-from contextlib import contextmanager
 from dataclasses import dataclass, field
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
@@ -87,7 +87,7 @@ class Studio:
         return connect(f"ws://127.0.0.1:{self.port}/socket", additional_headers=head, max_size=None, open_timeout=60)
 
 
-@contextmanager
+@contextlib.contextmanager
 def studio() -> Iterator[Studio]:
     """A studio whose folder lies beside secrets, with a link to them inside."""
     with tempfile.TemporaryDirectory(prefix="pliant-attack-") as place:
@@ -192,6 +192,12 @@ def _hear(link: ClientConnection, tally: Tally, data: bytes) -> None:
         return
 
 
+def _ask(link: ClientConnection, data: bytes, number: int) -> None:
+    link.send(data)
+    while _heard(link).get("answer") != number:
+        pass
+
+
 def _heard(link: ClientConnection) -> Mapping[str, Any]:
     said = link.recv(timeout=PATIENCE)
     assert isinstance(said, bytes)
@@ -218,20 +224,22 @@ class Honest:
 
     def ask_until(self, over: threading.Event, pause: float = 0.02) -> None:
         """Ask for the page, for a sign of life, and through the socket for a list of files and for control points."""
-        with self.target.connect() as link:
-            while not over.wait(pause):
-                for path in ("/alive", "/"):
-                    begin = time.perf_counter()
-                    status = self.target.get(path).status
-                    self.asked["requests"].append(1e3 * (time.perf_counter() - begin))
-                    assert status in (200, 204)
-                for command, values in (("folder.list", {}), ("points.get", {"layer": "Lattice"})):
-                    begin = time.perf_counter()
-                    number = len(self.asked["frames"]) + 1
-                    link.send(Frame({"id": number, "do": command, "with": values}).encode())
-                    while _heard(link).get("answer") != number:
-                        pass
-                    self.asked["frames"].append(1e3 * (time.perf_counter() - begin))
+        while not over.is_set():
+            with contextlib.suppress(ConnectionClosed, OSError), self.target.connect() as link:  # then once more
+                while not over.wait(pause):
+                    for path in ("/alive", "/"):
+                        self._timed("requests", lambda path=path: self.target.get(path))  # type: ignore[misc]
+                    for command, values in (("folder.list", {}), ("points.get", {"layer": "Lattice"})):
+                        number = len(self.asked["frames"]) + 1
+                        data = Frame({"id": number, "do": command, "with": values}).encode()
+                        self._timed("frames", lambda data=data, number=number: _ask(link, data, number))  # type: ignore[misc]
+
+    def _timed(self, kind: str, work: Callable[[], object]) -> None:
+        begin = time.perf_counter()
+        try:
+            work()
+        finally:  # what failed, or never came, counts with the time that was waited for it
+            self.asked[kind].append(1e3 * (time.perf_counter() - begin))
 
     def percentile(self, kind: str, share: float) -> float:
         """A percentile of the milliseconds."""

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from pliant.io.colors import as_float, is_color
 from pliant.io.report import LossReport
 from pliant.mesh import CornerValues, FaceLabels, PolygonMesh
 
@@ -87,8 +88,10 @@ def differences(before: PolygonMesh, after: PolygonMesh) -> dict[str, str]:
     if not _near(one, two):
         found["order"] = "the corners of the faces are other ones"
         return {**found, **_aside(before, after)}
-    for name in ("uvs", "normals"):
-        if not _same_corners(getattr(before, name), getattr(after, name), shape):
+    shared = after.vertex_attributes.get("normals")
+    normals = after.normals if after.normals is not None or shared is None else shared[after.faces.flat]
+    for name, values in (("uvs", after.uvs), ("normals", normals)):
+        if not _same_corners(getattr(before, name), values, shape):
             found[name] = "values at corners differ"
     for name in ("groups", "objects", "materials"):
         if not _same_labels(getattr(before, name), getattr(after, name), shape):
@@ -123,7 +126,12 @@ def _aside(before: PolygonMesh, after: PolygonMesh) -> dict[str, str]:
         found["cells"] = "they differ"
     for name, values in before.vertex_attributes.items():
         there = after.vertex_attributes.get(name)
-        if len(before.points) == len(after.points) and (there is None or not _near(values, there)):
+        alike = len(before.points) == len(after.points)
+        if alike and name == "normals" and there is None and after.normals is not None:
+            values, there = values[after.faces.flat], after.normals.per_corner  # the same, kept at corners
+        if name == "colors" and there is not None and is_color(values):
+            values, there = as_float(values), as_float(there)
+        if alike and (there is None or not _near(values, there)):
             found[_attribute(name)] = "values of vertices differ"
     return found
 
@@ -132,13 +140,17 @@ def _attribute(name: str) -> str:
     return name if name in ("colors", "normals") else f"attribute {name}"
 
 
-def _same_corners(before: CornerValues | None, after: CornerValues | None, shape: Corners) -> bool:
+def _same_corners(
+    before: CornerValues | None, after: CornerValues | NDArray[np.float64] | None, shape: Corners
+) -> bool:
     if before is None:
         return True
     given = before.per_corner[shape.corner]
     if after is None:
         return bool(np.isnan(given).all())
-    there = after.per_corner
+    there = after if isinstance(after, np.ndarray) else after.per_corner
+    if given.shape[1] == 3 and there.shape[1] == 2 and not np.nan_to_num(given[:, 2]).any():
+        given = given[:, :2]  # nothing is lost with a third coordinate that is nothing
     return given.shape == there.shape and _near(given, there)
 
 

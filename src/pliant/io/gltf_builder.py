@@ -58,6 +58,10 @@ def new_file(mesh: PolygonMesh, keeps: Keeps, path: Path) -> Encoded:
     source, corner_of, triangles = split(mesh)
     if more := len(source) - len(mesh.points):
         losses.append(f"{more:,} vertices are added where seams split them")
+    if mesh.uvs is not None and ((mesh.uvs.indices < 0).any() or mesh.uvs.values[:, 2:].any()):
+        losses.append("texture coordinates of three components, and that corners have none")
+    if mesh.normals is not None and (mesh.normals.indices < 0).any():
+        losses.append("that corners have no normals")
     points, rounding = as_float32(mesh.points, "glTF")
     losses += rounding
     attributes = _attributes(mesh, made, points[source], source, corner_of)
@@ -67,6 +71,9 @@ def new_file(mesh: PolygonMesh, keeps: Keeps, path: Path) -> Encoded:
     known = list(mesh.material_library)
     if labels is not None:
         known += [name for name in labels.names if name not in known]
+    order: tuple[str, ...] = ()
+    if (moved := int((np.sort(which, kind="stable") != which).sum())) > 0:
+        order = (f"the triangles of a material are put together: the order of {moved:,} is another",)
     for label in np.unique(which).tolist() if len(which) else [-1] * bool(len(triangles)):
         chosen = (triangles[which == label] if len(which) else triangles).astype(np.uint32).ravel()
         said: dict[str, Any] = {"attributes": attributes, "indices": made.accessor(chosen, _ELEMENTS)}
@@ -96,7 +103,7 @@ def new_file(mesh: PolygonMesh, keeps: Keeps, path: Path) -> Encoded:
     if not binary:
         head = "data:application/octet-stream;base64,"
         json["buffers"][0]["uri"] = head + base64.b64encode(made.chunk).decode()
-    return Encoded(packed(json, made.chunk, binary=binary), tuple(losses), tuple(notes))
+    return Encoded(packed(json, made.chunk, binary=binary), tuple(losses), (*order, *notes))
 
 
 def split(mesh: PolygonMesh) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.integer[Any]]]:

@@ -158,7 +158,7 @@ def companion(folder: Path | None, uri: str) -> Path | None:
 
 def packed(json: dict[str, Any], chunk: bytes | bytearray, *, binary: bool, pretty: bool = False) -> list[bytes]:
     """A file's parts: a GLB of a description and its first buffer, or the description alone."""
-    text = orjson.dumps(json, option=orjson.OPT_INDENT_2 if pretty else None)
+    text = orjson.dumps(json, option=orjson.OPT_SERIALIZE_NUMPY | (orjson.OPT_INDENT_2 if pretty else 0))
     if not binary:
         return [text]
     text += b" " * (-len(text) % 4)

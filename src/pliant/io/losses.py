@@ -78,6 +78,8 @@ def _corners(mesh: PolygonMesh, keeps: Keeps) -> Iterator[str]:
             yield f"{len(mesh.normals.values):,} normals at the corners of faces"
     if stored and not keeps.vertex_normals:
         yield f"{len(mesh.points):,} normals at vertices"
+    elif stored and mesh.normals is not None and keeps.corner_normals:
+        yield f"{len(mesh.points):,} normals at vertices: those at the corners of faces are kept"
 
 
 def _names(mesh: PolygonMesh, keeps: Keeps) -> Iterator[str]:
