@@ -13,7 +13,7 @@ export const AXIAL = {
   bounds: ["Bounds", "边界"],
   boundLow: ["Lower bound", "下界"],
   boundHigh: ["Upper bound", "上界"],
-  profile: ["Strength along the axis", "沿轴强度"],
+  profile: ["Profile", "沿轴分布"],
   profile_ramp: ["Ramp", "斜坡"],
   profile_smooth: ["Smooth", "平滑"],
   profile_constant: ["Even", "均匀"],

@@ -59,6 +59,8 @@ class AxialMode implements Mode {
 
   leave(): void {
     for (const stop of this.stops) stop();
+    void this.drag?.cancel();
+    this.drag = this.held = null;
     this.handles?.dispose();
     this.ghost?.dispose();
     this.tags?.dispose();
