@@ -15,7 +15,7 @@ from pliant.studio.session import Session
 def bent_scene():
     """A bar under a bend whose angle grows for two seconds."""
     mesh = bar(along=24, across=4)
-    stack = pl.Stack([pl.Layer("Bend", pl.Bend.around(mesh, axis="x", angle=0.0))])
+    stack = pl.Stack([pl.Layer("Bend", pl.Bend.around(mesh, axis="y", angle=0.0))])
     clip = pl.Clip(mesh, stack, duration=2.0, fps=10.0)
     clip = clip.key("Bend", 0.0, {"angle": 0.0}).key("Bend", 2.0, {"angle": 1.5}, easing="ease_in_out")
     return Scene(mesh, stack, clip)

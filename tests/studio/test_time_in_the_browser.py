@@ -12,7 +12,7 @@ def moving_scene(fps=10.0, ending="once"):
     mesh = bar(along=30, across=6)
     stack = pl.Stack(
         [
-            pl.Layer("Bend", pl.Bend.around(mesh, axis="x", angle=0.0)),
+            pl.Layer("Bend", pl.Bend.around(mesh, axis="y", angle=0.0)),
             pl.Layer("Twist", pl.Twist.around(mesh, axis="x", angle=0.0)),
         ]
     )

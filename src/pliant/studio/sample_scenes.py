@@ -10,18 +10,21 @@ import numpy as np
 
 from pliant.cages.boxes import cage_from_box
 from pliant.mesh import PolygonMesh
+from pliant.scene.clip import Clip
 from pliant.scene.layer import Layer
 from pliant.scene.scene import Scene
 from pliant.scene.stack import Stack
 from pliant.shape.kernels import GaussianKernel
 from pliant.shape.model import ShapeModel
 from pliant.shape.surface_samples import surface_samples
+from pliant.space.affine import Affine
 from pliant.space.bend import Bend
+from pliant.space.bspline_ffd import BSplineFFD
 from pliant.space.cage import Cage
 from pliant.space.dirichlet_ffd import DirichletFFD
 from pliant.space.twist import Twist
 from pliant.studio.faces import example_photograph, face_scene
-from pliant.studio.samples import bar, egg, textured_vase
+from pliant.studio.samples import bar, column, egg, textured_vase, torus
 from pliant.studio.shape_models import model_scene
 from pliant.studio.transfer_sample import arm, posed_bar
 from pliant.surface.arap import ARAP
@@ -116,12 +119,49 @@ def posed_arm() -> Scene:
     return Scene(mesh, Stack((Layer("Poses", ShapeKeys(moves, tuple(bench.poses), [1.0, 0.0, 0.0])),)))
 
 
+def torus_in_lattice() -> Scene:
+    """A torus in a lattice of which a corner has been pulled."""
+    mesh = torus()
+    lattice = BSplineFFD.around(mesh, shape=(5, 5, 3), margin=0.08)
+    controls = np.array(lattice.rest)
+    controls[4, 3, 2] += [0.45, 0.3, 0.55]
+    return Scene(mesh, Stack((Layer("Lattice", lattice.moved(controls)),)))
+
+
+def soft_head() -> Scene:
+    """A head in a fine lattice at rest, to be pulled anywhere."""
+    mesh = egg()
+    return Scene(mesh, Stack((Layer("Lattice", BSplineFFD.around(mesh, shape=(8, 8, 8), margin=0.05)),)))
+
+
+def swallowing_column() -> Scene:
+    """A column that sways while a bulge climbs through it: a tool that moves over the object, and a bend with keys."""
+    mesh = column()
+    box = np.array([[-0.75, -0.75, -2.0], [0.75, 0.75, -0.8]])
+    lattice = BSplineFFD.around(box, shape=(5, 5, 5))
+    controls = np.array(lattice.rest)
+    middle = controls[1:4, 1:4, 1:4]
+    middle[..., :2] *= 2.1
+    bulge = Layer("Bulge", lattice.moved(controls))
+    sway = Layer("Sway", Bend.around(mesh, axis="y", normal="x", angle=0.0, center=0.0))
+    stack = Stack((bulge, sway))
+    clip = Clip(mesh, stack, duration=2.4, fps=24.0, ending="loop")
+    for time, lift in ((0.0, 0.0), (2.4, 6.8)):
+        clip = clip.key("Bulge", time, {"frame": Affine.translation([0.0, 0.0, lift])}, easing=(0.3, 0.1, 0.7, 0.9))
+    for time, angle in ((0.0, 0.0), (0.6, 0.5), (1.8, -0.5), (2.4, 0.0)):
+        clip = clip.key("Sway", time, {"angle": angle}, easing="smooth")
+    return Scene(mesh, stack, clip)
+
+
 SCENES = {
+    "torus-in-lattice": SampleScene("Torus in a lattice", 96 * 40, torus_in_lattice, "points"),
+    "soft-head": SampleScene("Soft head", 72 * 48, soft_head, "pull"),
     "raised-arm": SampleScene("Raised arm", 1234, raised_arm, "surface"),
     "posed-arm": SampleScene("Arm with poses", 1234, posed_arm, "transfer"),
     "bent-bar": SampleScene("Bent bar", 2440, bent_bar, "axial"),
     "sited-egg": SampleScene("Egg with sites", 3456, sited_egg, "sites"),
     "caged-vase": SampleScene("Caged vase", 13920, caged_vase, "cage"),
     "varying-head": SampleScene("Varying head", 72 * 48, varying_head, "model"),
+    "swallowing-column": SampleScene("Swallowing column", 97 * 40, swallowing_column, "time"),
     "astronaut": SampleScene("Astronaut", 6990, astronaut, "face", lambda: example_photograph() is not None),
 }

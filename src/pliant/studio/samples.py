@@ -74,6 +74,17 @@ def bar(length: float = 4.0, width: float = 0.8, along: int = 60, across: int = 
     return _capped(points)
 
 
+def column(height: float = 4.0, radius: float = 0.32, along: int = 96, around: int = 40) -> PolygonMesh:
+    """A round column that stands on z = 0, with a foot and a head that are a little wider."""
+    part = np.linspace(0, 1, along + 1)
+    wide = radius * (1 + 0.55 * np.exp(-((part / 0.07) ** 2)) + 0.35 * np.exp(-(((1 - part) / 0.06) ** 2)))
+    angle = 2 * np.pi * np.arange(around) / around
+    points = np.empty((along + 1, around, 3))
+    points[..., 0], points[..., 1] = wide[:, None] * np.cos(angle), wide[:, None] * np.sin(angle)
+    points[..., 2] = height * part[:, None]
+    return _capped(points)
+
+
 def egg(around: int = 72, along: int = 48) -> PolygonMesh:
     """A head-sized egg with two dents for eyes and a bump for a nose: something to pull at."""
     u, v = _parameters(around, along)
