@@ -15,10 +15,13 @@ from pathlib import Path
 
 import numpy as np
 
+from pliant.scene.clip import Clip
 from pliant.scene.layer import Layer
 from pliant.scene.scene import Scene
 from pliant.scene.stack import Stack
+from pliant.space.bend import Bend
 from pliant.space.bspline_ffd import BSplineFFD
+from pliant.space.twist import Twist
 from pliant.studio.launching import launch
 from pliant.studio.samples import torus
 
@@ -80,6 +83,31 @@ def server_side(size, shape, moves=60):
     return float(np.median(cost[5:])), float(np.median(size_sent[5:]))
 
 
+def playing(size, moments=24):
+    """Median CPU milliseconds and bytes of a frame that is played for the first time: two layers with keys."""
+    import pliant.studio.commands  # noqa: F401
+    from pliant.studio.frames import Frame
+    from pliant.studio.session import Session
+
+    mesh = torus(*SIZES[size])
+    stack = Stack(
+        (Layer("Twist", Twist.around(mesh, axis="z", angle=0.0)), Layer("Bend", Bend.around(mesh, axis="y", angle=0.0)))
+    )
+    clip = Clip(mesh, stack, duration=1.0)
+    for name in ("Twist", "Bend"):
+        clip = clip.key(name, 0.0, {"angle": 0.0}).key(name, 1.0, {"angle": 0.6}, easing="ease_in_out")
+    session, page = Session(Scene(mesh, stack, clip), "ring"), Page()
+    session.clients.append(page)
+    cost = []
+    for moment in range(moments):
+        data = Frame({"id": moment, "do": "time.frame", "with": {"time": (moment + 0.5) / moments}}).encode()
+        began = time.process_time()
+        session.handle(page, data)
+        cost.append(1000 * (time.process_time() - began))
+    session.end()
+    return float(np.median(cost[3:])), page.last
+
+
 def in_the_browser(browser, size, shape, moves=60):
     """Milliseconds from opening the page to the mesh, and the median from a move to its drawing."""
     scene = scene_of(size, shape)
@@ -112,6 +140,10 @@ def main():
             goal = GOALS.get((size, shape), "")
             name, rate = " × ".join(map(str, shape)), 1000 / cost
             print(f"| {size} | {name} | {cost:.2f} | {rate:.0f} | {sent / 1000:.0f} | {goal} |")
+    print("\n| mesh | a frame played for the first time, server CPU ms | kB | frames a second |\n|---|---|---|---|")
+    for size in ("35k", "200k"):
+        cost, sent = playing(size)
+        print(f"| {size} | {cost:.1f} | {sent / 1000:.0f} | {1000 / cost:.0f} |")
     if not wanted.browser:
         return
     from playwright.sync_api import sync_playwright

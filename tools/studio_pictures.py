@@ -15,7 +15,15 @@ from PIL import Image
 
 import pliant as pl
 from pliant.studio.launching import launch
-from pliant.studio.sample_scenes import astronaut, bent_bar, caged_vase, raised_arm, sited_egg, varying_head
+from pliant.studio.sample_scenes import (
+    astronaut,
+    bent_bar,
+    caged_vase,
+    raised_arm,
+    sited_egg,
+    swallowing_column,
+    varying_head,
+)
 from pliant.studio.samples import textured_vase, torus
 
 OUT = Path(__file__).parents[1] / "docs" / "pictures"
@@ -184,6 +192,45 @@ def transfers(browser) -> None:
         save(page, "studio-transfer", (1000, 625))
 
 
+def times(browser) -> None:
+    """A tool on its way through a column, ghosts, and a curve."""
+    with shown(browser, swallowing_column(), "column", "time") as page:
+        wait(page, "document.querySelector('.ruler .playhead-grip') !== null")
+        page.evaluate("window.pliantStudio.look(0.25, -1, 0.16)")
+        page.locator(".track-row", has_text="Bulge").locator(".track-name").click()
+        page.get_by_role("button", name="Place the tool").click()
+        page.get_by_role("button", name="Onion skin").click()
+        page.get_by_label("every", exact=True).select_option("8")
+        seek(page, 1.0)
+        wait(page, "window.pliantStudio.probes.time.ghosts() === 4")
+        save(page, "studio-time", (1000, 625))
+        page.get_by_role("button", name="Onion skin").click()
+        page.get_by_role("button", name="Place the tool").click()
+        page.get_by_role("radio", name="Curves").click()
+        page.locator("[data-track='Sway/angle'] .track-name").click()
+        page.locator(".curve-area .key").nth(2).click()
+        time.sleep(1)
+        save(page, "studio-curves", (1000, 625))
+
+
+def seek(page, moment: float) -> None:
+    """The playhead to a moment."""
+    box = page.locator(".ruler").bounding_box()
+    page.mouse.click(box["x"] + page.evaluate(f"window.pliantStudio.probes.time.x({moment})"), box["y"] + 12)
+    wait(page, f"Math.abs(window.pliantStudio.probes.time.time() - {moment}) < 0.03")
+
+
+def gallery(browser) -> None:
+    """Templates on the vase."""
+    with shown(browser, pl.Scene(textured_vase()), "vase", "time") as page:
+        page.evaluate("window.pliantStudio.look(0.4, -1, 0.3)")
+        page.get_by_role("button", name="Templates").click()
+        wait(page, "document.querySelectorAll('.template-card.drawn').length >= 16")
+        page.locator("[data-template='corkscrew']").click()
+        page.mouse.move(5, 5)
+        save(page, "studio-templates", (1000, 625))
+
+
 def wait(page, script: str) -> None:
     """Until a script is true on the page, and drawn."""
     for _ in range(600):
@@ -226,6 +273,8 @@ PICTURES = {
     "cages": cages,
     "surfaces": surfaces,
     "transfers": transfers,
+    "times": times,
+    "gallery": gallery,
 }
 
 if __name__ == "__main__":
