@@ -85,11 +85,16 @@ from .shape.densities import ProductDensity as ProductDensity
 from .shape.diagnostics import effective_sample_size as effective_sample_size
 from .shape.diagnostics import r_hat as r_hat
 from .shape.gaussian_process import GaussianProcess as GaussianProcess
+from .shape.kernel_algebra import change_point as change_point
 from .shape.kernels import ExponentialKernel as ExponentialKernel
 from .shape.kernels import GaussianKernel as GaussianKernel
 from .shape.kernels import InverseMultiquadricKernel as InverseMultiquadricKernel
 from .shape.kernels import MaternKernel as MaternKernel
 from .shape.kernels import RationalQuadraticKernel as RationalQuadraticKernel
+from .shape.matrix_kernels import DiagonalKernel as DiagonalKernel
+from .shape.matrix_kernels import DirectedKernel as DirectedKernel
+from .shape.matrix_kernels import SampleCovariance as SampleCovariance
+from .shape.matrix_kernels import SymmetricKernel as SymmetricKernel
 from .shape.metrics import compactness as compactness
 from .shape.metrics import generalization as generalization
 from .shape.metrics import leave_one_out as leave_one_out

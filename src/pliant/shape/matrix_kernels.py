@@ -16,7 +16,18 @@ from pliant.shape.kernels import Floats, Kernel
 
 @dataclass(frozen=True)
 class DiagonalKernel(Kernel):
-    """Independent coordinates, each with a scalar kernel of its own."""
+    """Independent coordinates, each with a scalar kernel of its own.
+
+    Parameters
+    ----------
+    x, y, z
+        The kernel of each coordinate of a displacement.
+
+    Raises
+    ------
+    InvalidParameter
+        A kernel that is not scalar.
+    """
 
     x: Kernel
     y: Kernel
