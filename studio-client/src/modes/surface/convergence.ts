@@ -30,6 +30,11 @@ export class Convergence {
     this.element.hidden = true;
   }
 
+  /** The handle is released: an iteration that was under way is finished elsewhere, unseen. */
+  end(): void {
+    if (!this.converged) this.element.hidden = true;
+  }
+
   /** The energies of one answer: at its beginning, and after each iteration. */
   add(energies: ArrayLike<number>, converged: boolean): void {
     this.energies.push(...Array.from(energies).slice(this.energies.length ? 1 : 0));

@@ -35,7 +35,7 @@ export class SurfacePanel {
   ) {}
 
   /** What is picked, and whose it is: a layer's, or nobody's yet; `other` is the layer that could take it. */
-  show(region: Region | null, own: string | null, other: string | null): void {
+  show(region: Region, own: string | null, other: string | null): void {
     const typed = this.element.contains(document.activeElement) && document.activeElement instanceof HTMLInputElement;
     if (typed && document.activeElement!.getAttribute("aria-label") === t("selectionName")) return;
     replace(
@@ -58,9 +58,9 @@ export class SurfacePanel {
     );
   }
 
-  private counts(region: Region | null): HTMLElement {
+  private counts(region: Region): HTMLElement {
     const line = (part: Part, label: string): HTMLElement =>
-      h("p", { class: `mark-count ${part}` }, h("i"), h("span", null, label), h("strong", null, grouped(region?.count(part) ?? 0)));
+      h("p", { class: `mark-count ${part}` }, h("i"), h("span", null, label), h("strong", null, grouped(region.count(part))));
     return h("div", { class: "mark-counts" }, line("region", t("region")), line("handle", t("handlePart")));
   }
 

@@ -98,7 +98,7 @@ export class SkeletonShow {
     this.handles.setColors(
       (i) => (most(handle, i) ? palette.selected : most(region, i) ? palette.region : palette.handle),
       (i) => (most(handle, i) ? 1.15 : 0.85),
-      palette.wire,
+      palette.lattice,
     );
     this.viewport?.request();
   }

@@ -1,0 +1,148 @@
+// What is picked, and whose it is: a layer's, or nobody's yet.
+
+import { Box3, Vector3 } from "three";
+import type { Studio } from "../../studio";
+import type { Layer } from "../../transport/protocol";
+import { IN_HANDLE } from "../../view/marks";
+import type { Picked } from "./picking";
+import { Region, type Merge, type Part } from "./region";
+import type { Method, SurfaceToolbar } from "./tools";
+
+const KINDS = ["laplacian-edit", "arap", "skeleton-edit"];
+
+export class Chosen {
+  region = new Region(0);
+  /** The layer whose region this is; null where nobody has it yet. */
+  own: string | null = null;
+  /** While somebody drags, what is picked stays. */
+  busy: () => boolean = () => false;
+  private asked: string | null = null;
+
+  constructor(
+    private readonly studio: Studio,
+    private readonly tools: SurfaceToolbar,
+    /** It looks otherwise now; or it is another thing. */
+    private readonly painted: () => void,
+    private readonly changed: () => void,
+  ) {}
+
+  /** The active layer, if it edits the surface. */
+  get layer(): Layer | null {
+    const { layer } = this.studio;
+    return layer && KINDS.includes(layer.kind) ? layer : null;
+  }
+
+  /** The middle of the handle, as it is drawn. */
+  get pivot(): Vector3 | null {
+    const handle = this.region.indices("handle");
+    if (!handle.length) return null;
+    const sum = new Vector3();
+    for (const vertex of handle) sum.add(this.at(vertex));
+    return sum.divideScalar(handle.length);
+  }
+
+  get box(): Box3 | null {
+    const box = new Box3();
+    for (const vertex of this.region.indices("region")) box.expandByPoint(this.at(vertex));
+    return box.isEmpty() ? null : box;
+  }
+
+  holds(vertex: number): boolean {
+    return (this.region.marks[vertex]! & IN_HANDLE) !== 0;
+  }
+
+  /** Another shape: nothing is picked. */
+  begin(): void {
+    const count = this.studio.mesh.pointCount;
+    if (this.region.marks.length === count) return;
+    this.region = new Region(count);
+    this.own = null;
+  }
+
+  /** This layer has been made of it. */
+  adopt(layer: string): void {
+    this.own = layer;
+    this.studio.activeLayer.set(layer);
+  }
+
+  /** What the active layer is made of. */
+  async load(): Promise<void> {
+    const { layer } = this;
+    this.asked = layer?.name ?? null;
+    if (!layer) this.own = null;
+    if (!layer || this.busy()) {
+      this.changed();
+      return;
+    }
+    const answer = await this.studio.ask("surface.region", { layer: layer.name });
+    if (!answer || this.asked !== layer.name || this.busy()) return;
+    const { region, handle } = answer.arrays;
+    this.region = Region.of(this.studio.mesh.pointCount, region as Uint32Array, handle as Uint32Array);
+    this.own = layer.name;
+    this.tools.change({ method: answer.head["method"] as Method });
+    this.changed();
+  }
+
+  /** Where picks go; once one has ended, what is picked is no layer's any more. */
+  picked(): Picked {
+    let before = new Uint8Array();
+    let how: Merge = "only";
+    return {
+      begin: (wanted) => {
+        how = wanted;
+        before = this.region.marks.slice();
+      },
+      show: (indices) => {
+        if (before.length !== this.region.marks.length) return;
+        this.region.marks.set(before);
+        this.region.take(this.tools.now.part, indices, how);
+        this.painted();
+      },
+      more: (indices) => {
+        this.region.take(this.tools.now.part, indices, how);
+        this.painted();
+      },
+      end: () => this.leaveLayer(),
+    };
+  }
+
+  async grow(rings: number): Promise<void> {
+    const { part } = this.tools.now;
+    const index = this.region.indices(part);
+    if (!index.length) return;
+    this.replace(part, (await this.studio.ask("surface.grow", { rings }, { index }))?.arrays["index"]);
+  }
+
+  async recall(name: string, part: Part): Promise<void> {
+    this.replace(part, (await this.studio.ask("surface.part", { part: name }))?.arrays["index"]);
+  }
+
+  clear(): void {
+    this.region.clear("handle");
+    if (this.tools.now.part === "region") this.region.clear("region");
+    this.leaveLayer();
+  }
+
+  /** Give it to the active layer, in place of the layer's own. */
+  async give(): Promise<void> {
+    const { layer, region } = this;
+    if (!layer) return;
+    const arrays = { region: region.indices("region"), handle: region.indices("handle") };
+    if (await this.studio.ask("surface.restructure", { layer: layer.name }, arrays)) await this.load();
+  }
+
+  private replace(part: Part, indices: ArrayLike<number> | undefined): void {
+    if (!indices) return;
+    this.region.take(part, Array.from(indices), "only");
+    this.leaveLayer();
+  }
+
+  private leaveLayer(): void {
+    this.own = null;
+    this.changed();
+  }
+
+  private at(vertex: number): Vector3 {
+    return new Vector3().fromArray(this.studio.mesh.positions, 3 * vertex);
+  }
+}

@@ -1,0 +1,146 @@
+// The handle in hand: by a gizmo in each view, or by the surface itself; what has moved goes to the server as a map.
+
+import { Matrix4, Plane, Vector3 } from "three";
+import type { Studio } from "../../studio";
+import type { Numbers } from "../../transport/frame";
+import { Gizmo } from "../../view/gizmo";
+import type { Viewport } from "../../view/viewport";
+import { LayerDrag } from "../layer_drag";
+import type { Pointer } from "../mode";
+import type { Convergence } from "./convergence";
+import type { Chosen } from "./chosen";
+import type { SurfaceToolbar } from "./tools";
+
+export class HandleDrag {
+  gizmos: Gizmo[] = [];
+  axis: 0 | 1 | 2 | null = null;
+  private drag: LayerDrag | null = null;
+  private matrix: Float64Array | null = null;
+  private grab: { plane: Plane; at: Vector3 } | null = null;
+
+  constructor(
+    private readonly studio: Studio,
+    private readonly tools: SurfaceToolbar,
+    private readonly chosen: Chosen,
+    private readonly convergence: Convergence,
+    /** The skeleton has gone along. */
+    private readonly carried: (points: Numbers) => void,
+  ) {}
+
+  get active(): boolean {
+    return this.drag !== null;
+  }
+
+  /** Whether the surface itself is held. */
+  get grabbed(): boolean {
+    return this.grab !== null;
+  }
+
+  /** A gizmo in each of some views. */
+  showIn(views: Viewport[]): void {
+    for (const gizmo of this.gizmos) gizmo.dispose();
+    this.gizmos = views.map((view) => {
+      const gizmo = new Gizmo(view);
+      gizmo.onBegin = () => this.hold();
+      gizmo.onMove = (matrix) => this.put(matrix);
+      gizmo.onEnd = () => void this.finish();
+      return gizmo;
+    });
+    this.followTools();
+  }
+
+  followTools(): void {
+    const { mover } = this.tools;
+    for (const gizmo of this.gizmos) {
+      if (mover) gizmo.setTool(mover);
+      gizmo.setAxis(this.axis);
+    }
+  }
+
+  place(): void {
+    const at = this.tools.mover ? this.chosen.pivot : null;
+    for (const gizmo of this.gizmos) {
+      gizmo.useCamera();
+      gizmo.place(at);
+    }
+  }
+
+  /** The pointer takes hold of the handle itself, to move it in the plane of the view. */
+  take(pointer: Pointer): boolean {
+    const { mesh, viewport } = this.studio;
+    const hit = mesh.object.visible && viewport.ray(pointer.x, pointer.y).intersectObject(mesh.target, false)[0];
+    if (!hit || !hit.face || this.tools.mover !== "translate") return false;
+    const { a, b, c } = hit.face;
+    if (![a, b, c].some((vertex) => this.chosen.holds(mesh.pointOf(vertex)))) return false;
+    const plane = new Plane().setFromNormalAndCoplanarPoint(viewport.cameras.direction(), hit.point);
+    this.grab = { plane, at: hit.point };
+    this.hold();
+    return true;
+  }
+
+  pull(pointer: Pointer): void {
+    const { plane, at } = this.grab!;
+    const to = this.studio.viewport.ray(pointer.x, pointer.y).ray.intersectPlane(plane, new Vector3());
+    if (!to) return;
+    const by = to.sub(at);
+    const kept = this.axis === null ? by : new Vector3().setComponent(this.axis, by.getComponent(this.axis));
+    this.put(new Matrix4().makeTranslation(kept));
+  }
+
+  release(): void {
+    this.grab = null;
+    void this.finish();
+  }
+
+  /** The same handle by another method. */
+  send(): void {
+    const { method } = this.tools.now;
+    this.drag?.move({ method }, this.matrix ? { matrix: this.matrix } : {});
+  }
+
+  cancel(): void {
+    void this.drag?.cancel();
+    this.drag = this.grab = null;
+    for (const gizmo of this.gizmos) gizmo.cancel();
+  }
+
+  dispose(): void {
+    this.cancel();
+    for (const gizmo of this.gizmos) gizmo.dispose();
+    this.gizmos = [];
+  }
+
+  private hold(): void {
+    const { own, region } = this.chosen;
+    this.convergence.begin();
+    this.matrix = null;
+    const begin = { layer: own ?? "", method: this.tools.now.method };
+    const structure = own === null ? { region: region.indices("region"), handle: region.indices("handle") } : {};
+    this.drag = new LayerDrag(this.studio, "surface", begin, (arrays) => this.answered(arrays), structure);
+  }
+
+  private put(matrix: Matrix4): void {
+    this.matrix = new Float64Array(matrix.elements);
+    this.send();
+  }
+
+  /** What an answer says beside the points; where an iteration has not converged, it goes on. */
+  private answered(arrays: Record<string, Numbers>): void {
+    if (arrays["skeleton"]) this.carried(arrays["skeleton"]);
+    if (!arrays["energies"]) return;
+    const converged = arrays["converged"]![0] === 1;
+    this.convergence.add(arrays["energies"], converged);
+    if (!converged && this.drag && this.matrix) this.send();
+  }
+
+  private async finish(): Promise<void> {
+    const { drag } = this;
+    this.drag = null; // an iteration goes no further: the server finishes it
+    this.convergence.end();
+    if (!drag) return;
+    const layer = (await drag.begun)?.head["layer"] as string | undefined;
+    await drag.commit();
+    if (layer !== undefined) this.chosen.adopt(layer);
+    await this.chosen.load();
+  }
+}
