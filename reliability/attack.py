@@ -37,7 +37,7 @@ from reliability.canary import Canary
 from reliability.hostile import asked, frame, request
 from reliability.ledger import publish
 
-PATIENCE = 30  # seconds that an attacker waits for an answer
+PATIENCE = 20  # seconds that an attacker waits for an answer
 ROUND = 25  # frames that an attacker sends through one connection
 MARK = b"the-canary-that-nobody-may-see"
 

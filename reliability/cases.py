@@ -81,13 +81,10 @@ def _size(target: Floats) -> float:
     return float(np.linalg.norm(np.ptp(target, axis=0)))
 
 
-def _warp(kind: str) -> Callable[[Random], Case]:
-    def make(target: Floats, random: Random) -> Deformer:
-        sites = _sites(target, random)
-        made: Deformer = getattr(pl, kind)(sites, sites + 0.05 * _size(target) * random.normal(size=sites.shape))
-        return made
-
-    return _laid(make)
+def _warped(target: Floats, random: Random) -> tuple[Floats, Floats]:
+    """Landmarks and where they go."""
+    sites = _sites(target, random)
+    return sites, sites + 0.05 * _size(target) * random.normal(size=sites.shape)
 
 
 def _cage(coordinates: str) -> Callable[[Random], Case]:
@@ -189,7 +186,9 @@ CASES: dict[str, Callable[[Random], Case]] = {
     "laplacian-edit": _edit("LaplacianEdit"),
     "model-deformer": _model,
     "placed": _laid(_placed),
-    "radial-basis-warp": _warp("RadialBasisWarp"),
+    "radial-basis-warp": _laid(
+        lambda t, r: pl.RadialBasisWarp(*_warped(t, r), support=_size(t) * r.uniform(0.3, 1.5))
+    ),
     "random-field": _laid(_field),
     "scale": _laid(lambda t, r: pl.Scale(x=r.uniform(0.4, 1.6), y=r.uniform(0.4, 1.6), origin=t.mean(axis=0))),
     "shape-keys": _keys,
@@ -199,7 +198,7 @@ CASES: dict[str, Callable[[Random], Case]] = {
     "summed": _laid(_sum),
     "tangent-frames": _laid(lambda t, r: pl.TangentFrames.around(t, rates=0.3 * r.normal(size=(3, 4)))),
     "taper": _axial("Taper", factor=(0.4, 1.6)),
-    "thin-plate-spline": _warp("ThinPlateSpline"),
+    "thin-plate-spline": _laid(lambda t, r: pl.ThinPlateSpline(*_warped(t, r))),
     "twist": _axial("Twist", angle=(-2, 2)),
     "wave": _axial("Wave", amplitude=(-0.1, 0.1), phase=(-3, 3)),
 }  # fmt: skip

@@ -13,9 +13,10 @@ def mesh(seed: int) -> PolygonMesh:
     """Polygons of three to seven corners, vertices that none uses, seams, names, attributes: some of it, by chance."""
     random = np.random.default_rng(seed)
     count = int(random.integers(8, 60))
-    points = random.normal(size=(count, 3)) * 10.0 ** random.integers(-3, 4)
+    points = random.normal(size=(count, 3))
     if random.random() < 0.3:
         points = np.round(points, 2)
+    points = points * 10.0 ** random.integers(-3, 4)
     most = 3 if random.random() < 0.3 else 7
     sides = random.integers(3, most + 1, int(random.integers(1, 40)))
     faces = [random.choice(count, side, replace=False).tolist() for side in sides]

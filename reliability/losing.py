@@ -60,9 +60,10 @@ def cluster(workers: int) -> Iterator[tuple[LocalCluster, Client]]:
 
 
 def kill_one(local: LocalCluster, rng: random.Random) -> bool:
-    """Kill a worker; False where none lives just now."""
-    pids = [nanny.process.pid for nanny in local.workers.values() if nanny.process is not None]
-    living = [pid for pid in pids if pid is not None]
+    """Kill a worker that works; False where none does just now: one that dies while it starts is never replaced."""
+    known = set(local.scheduler_info["workers"])
+    nannies = [each for each in local.workers.values() if each.worker_address in known and each.process is not None]
+    living = [each.process.pid for each in nannies if each.process.pid is not None]
     if not living:
         return False
     with contextlib.suppress(ProcessLookupError):

@@ -71,9 +71,9 @@ def new_file(mesh: PolygonMesh, keeps: Keeps, path: Path) -> Encoded:
     known = list(mesh.material_library)
     if labels is not None:
         known += [name for name in labels.names if name not in known]
-    order: tuple[str, ...] = ()
+    told = _scaled(mesh)
     if (moved := int((np.sort(which, kind="stable") != which).sum())) > 0:
-        order = (f"the triangles of a material are put together: the order of {moved:,} is another",)
+        told += (f"the triangles of a material are put together: the order of {moved:,} is another",)
     for label in np.unique(which).tolist() if len(which) else [-1] * bool(len(triangles)):
         chosen = (triangles[which == label] if len(which) else triangles).astype(np.uint32).ravel()
         said: dict[str, Any] = {"attributes": attributes, "indices": made.accessor(chosen, _ELEMENTS)}
@@ -103,7 +103,7 @@ def new_file(mesh: PolygonMesh, keeps: Keeps, path: Path) -> Encoded:
     if not binary:
         head = "data:application/octet-stream;base64,"
         json["buffers"][0]["uri"] = head + base64.b64encode(made.chunk).decode()
-    return Encoded(packed(json, made.chunk, binary=binary), tuple(losses), (*order, *notes))
+    return Encoded(packed(json, made.chunk, binary=binary), tuple(losses), (*told, *notes))
 
 
 def split(mesh: PolygonMesh) -> tuple[NDArray[np.int64], NDArray[np.int64], NDArray[np.integer[Any]]]:
@@ -174,6 +174,20 @@ def normals_of(
     result = unit(found)
     result[empty] = [0, 0, 1]  # a normal must have a length
     return result
+
+
+def _scaled(mesh: PolygonMesh) -> tuple[str, ...]:
+    """That normals get unit length, where they have none: the format asks for it."""
+    values = mesh.vertex_attributes.get("normals") if mesh.normals is None else mesh.normals.values
+    if values is None or not len(values):
+        return ()
+    lengths = np.linalg.norm(values, axis=1)
+    long, short = lengths.max(), lengths.min()
+    return (
+        ()
+        if 0.999 < short <= long < 1.001
+        else (f"normals become of unit length; theirs are {short:.3g} to {long:.3g}",)
+    )
 
 
 def _at_corners(values: CornerValues, corner_of: NDArray[np.int64]) -> NDArray[np.float64]:

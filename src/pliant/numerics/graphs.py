@@ -36,5 +36,8 @@ def grown(graph: csr_array, chosen: NDArray[np.bool_], rings: int) -> NDArray[np
     pattern = csr_array((np.ones(graph.nnz, np.int8), graph.indices, graph.indptr), shape=graph.shape)
     result = chosen.copy()
     for _ in range(rings):
-        result |= (pattern @ result.astype(np.int32)) > 0
+        wider = result | ((pattern @ result.astype(np.int32)) > 0)
+        if np.array_equal(wider, result):  # all that can be reached
+            break
+        result = wider
     return result
