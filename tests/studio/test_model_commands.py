@@ -183,6 +183,17 @@ def test_a_fit_that_is_stopped_leaves_the_shape_as_it_was(opened, tmp_path):
     assert not page.events("failure")
 
 
+def test_a_fit_that_cannot_be_says_why(opened, tmp_path):
+    session, page = opened
+    mesh = session.scene.mesh
+    inside_out = pl.PolygonMesh(mesh.points, mesh.triangles[:, ::-1])
+    page.ask(session, "model.target", {"upload": sent(session, page, inside_out, tmp_path)})
+    page.ask(session, "model.fit", LAYER)
+    until(session, lambda: page.events("failure"))
+    assert "turn normals that point inwards" in page.events("failure")[-1].head["message"]
+    assert session.history.position == 0
+
+
 def test_arrows_are_a_draw_from_the_process(opened):
     session, page = opened
     answer = page.ask(session, "model.field", {"sigma": 0.7, "scale": 0.2, "seed": 4, "count": 90})

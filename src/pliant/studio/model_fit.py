@@ -61,10 +61,13 @@ class Fitting:
         def watch(each: Round) -> None:
             self._submit(self._show, job, each.number / each.most, self._stack(each.coefficients, each.pose))
             if job.stopped.is_set():
-                self._submit(self._restore)
                 raise Stopped
 
-        found: Fit = shape.posterior().fit(self.target, iterations=self.rounds, pose=self.pose, watch=watch)
+        try:
+            found: Fit = shape.posterior().fit(self.target, iterations=self.rounds, pose=self.pose, watch=watch)
+        except PliantError:
+            self._submit(self._restore)
+            raise
         return self._stack(found.coefficients, found.pose)
 
     def _stack(self, coefficients: Floats, pose: Floats) -> Stack:

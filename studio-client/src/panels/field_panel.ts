@@ -9,6 +9,7 @@ import { Latest } from "../transport/latest";
 import type { Paint, Studio } from "../studio";
 import type { Frame } from "../transport/frame";
 import { button, checkbox, numberField, row, segments, select, setNumber, slider } from "./controls";
+import { withAlpha } from "../view/color_map";
 import { Legend } from "./legend";
 
 type Slice = "box" | "x" | "y" | "z";
@@ -220,10 +221,4 @@ export class FieldPanel {
       fold.status === "folds" && button(t("limitFold"), () => void studio.ask("field.limit"), { kind: "quiet" }),
     );
   }
-}
-
-function withAlpha(table: Uint8Array): Uint8Array {
-  const out = new Uint8Array((table.length / 3) * 4).fill(255);
-  for (let i = 0; i < table.length / 3; i++) out.set(table.subarray(3 * i, 3 * i + 3), 4 * i);
-  return out;
 }

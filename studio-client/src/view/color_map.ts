@@ -78,3 +78,10 @@ export class ColorMap {
     return texture;
   }
 }
+
+/** (n, 3) colours as (n, 4), opaque. */
+export function withAlpha(table: Uint8Array): Uint8Array {
+  const out = new Uint8Array((table.length / 3) * 4).fill(255);
+  for (let i = 0; i < table.length / 3; i++) out.set(table.subarray(3 * i, 3 * i + 3), 4 * i);
+  return out;
+}

@@ -6,6 +6,7 @@ import type { Studio } from "../../studio";
 import { Handles } from "../../view/handles";
 import { Latest } from "../../transport/latest";
 import type { Numbers } from "../../transport/frame";
+import type { Layer } from "../../transport/protocol";
 import { LayerDrag } from "../layer_drag";
 import { registerMode, type Mode, type Pointer } from "../mode";
 import { ModelPanel } from "./panel";
@@ -88,7 +89,6 @@ class ModelMode implements Mode {
     this.stops = [
       studio.session.scene.onChange(() => this.follow()),
       studio.activeLayer.onChange(() => this.latest.push(null)),
-      studio.pointsMoved.onChange(() => this.field.shown && this.field.refresh()),
       studio.settings.all.onChange(() => this.look()),
     ];
     this.follow();
@@ -257,18 +257,20 @@ class ModelMode implements Mode {
       this.selected.clear();
       this.target.refresh();
     }
-    if (this.studio.layer?.kind !== KIND) {
-      const other = this.studio.scene?.layers.findLast((layer) => layer.kind === KIND);
-      if (other) this.studio.activeLayer.set(other.name);
-    }
+    if (this.field.shown) this.field.refresh();
     this.latest.push(null);
   }
 
+  /** The model by hand: the active layer's, or the topmost. */
+  private get layer(): Layer | null {
+    const { layer, scene } = this.studio;
+    return layer?.kind === KIND ? layer : (scene?.layers.findLast((each) => each.kind === KIND) ?? null);
+  }
+
   private async load(): Promise<void> {
-    const { studio } = this;
-    const { layer } = studio;
+    const { layer, studio } = this;
     if (this.drag || this.sliders.dragging) return;
-    const answer = layer?.kind === KIND ? await studio.ask("model.get", { layer: layer.name }) : null;
+    const answer = layer ? await studio.ask("model.get", { layer: layer.name }) : null;
     if (!this.handles || this.drag || this.sliders.dragging) return;
     this.model = layer && answer ? new ModelState(layer.name, answer) : null;
     for (const index of this.selected) if (index >= (this.model?.landmarks ?? 0)) this.selected.delete(index);

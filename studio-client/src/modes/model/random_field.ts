@@ -5,6 +5,7 @@ import { t } from "../../core/strings";
 import { button, checkbox, row, slider } from "../../panels/controls";
 import type { Studio } from "../../studio";
 import { Latest } from "../../transport/latest";
+import { withAlpha } from "../../view/color_map";
 import { FieldView } from "../../view/field_view";
 import { buildModel, type KernelChoice } from "./build_dialog";
 
@@ -96,10 +97,4 @@ export class RandomFieldPanel {
     );
     studio.viewport.request();
   }
-}
-
-function withAlpha(table: Uint8Array): Uint8Array {
-  const out = new Uint8Array((table.length / 3) * 4).fill(255);
-  for (let i = 0; i < table.length / 3; i++) out.set(table.subarray(3 * i, 3 * i + 3), 4 * i);
-  return out;
 }

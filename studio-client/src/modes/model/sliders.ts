@@ -28,6 +28,7 @@ export class CoefficientSliders {
       this.shown = to;
       this.show(model);
     };
+    const focused = this.element.contains(document.activeElement) ? document.activeElement?.getAttribute("aria-label") : null;
     replace(
       this.element,
       ...Array.from({ length: count }, (_, i) => this.row(model, i)),
@@ -38,6 +39,7 @@ export class CoefficientSliders {
         this.shown > FIRST && button(t("fewerCoefficients"), () => change(FIRST), { kind: "quiet" }),
       ),
     );
+    if (focused) this.element.querySelector<HTMLElement>(`[aria-label="${CSS.escape(focused)}"]`)?.focus();
   }
 
   private row(model: ModelState, index: number): HTMLElement {
