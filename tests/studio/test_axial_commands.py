@@ -9,7 +9,9 @@ from hypothesis import strategies as st
 from pages import joined
 
 import pliant as pl
+from pliant.scene.kinds import all_kinds
 from pliant.scene.project import load_project, save_project
+from pliant.space.axial import AxialDeformer
 from pliant.studio.axial.following import Ray, followed, snapped
 from pliant.studio.axial.ghost import ghost
 from pliant.studio.axial.handles import TABLE, handles_of
@@ -184,3 +186,10 @@ def test_what_has_no_axis_is_refused_by_name():
         page.ask(session, "axial.begin", {"layer": "Taper", "handle": "factor"})
         assert "6" in page.refused(session, "axial.move", {"ray": [1, 2, 3], "snap": False})["message"]
         assert "direction" in page.refused(session, "axial.move", {"ray": [0, 0, 0, 0, 0, 0], "snap": False})["message"]
+
+
+def test_every_deformer_along_an_axis_has_a_handle_for_a_number():
+    own = [kind.cls for kind in all_kinds().values() if kind.cls.__module__.startswith("pliant.")]
+    axial = [cls for cls in own if issubclass(cls, AxialDeformer) and cls.parameters]
+    assert len(axial) >= 7
+    assert [cls.__name__ for cls in axial if cls not in TABLE] == []

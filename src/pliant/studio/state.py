@@ -15,6 +15,7 @@ from pliant.scene.kinds import kind_of
 from pliant.scene.layer import Layer
 from pliant.scene.scene import Scene
 from pliant.scene.values import encode
+from pliant.studio.axial.tool import holds
 from pliant.studio.clip_state import clip_state
 from pliant.studio.lattices import lattice_shape
 from pliant.studio.parts import parts_of
@@ -86,6 +87,7 @@ def _layer(layer: Layer) -> dict[str, Any]:
         "shape": lattice_shape(deformer),
         "linear": by_points and _is_linear(deformer),
         "transform": layer.in_space,
+        "axial": holds(deformer),
     }
 
 

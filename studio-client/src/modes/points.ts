@@ -1,6 +1,6 @@
 // Control points by hand: of a lattice, of sites, of a cage: of any deformer whose controls are positions.
 
-import { Plane, Vector3 } from "three";
+import { Vector3 } from "three";
 import type { TourStep } from "../panels/tour";
 import type { IconName } from "../core/icons";
 import type { StringKey } from "../core/strings";
@@ -8,21 +8,13 @@ import type { Studio } from "../studio";
 import type { Layer } from "../transport/protocol";
 import { Gizmo } from "../view/gizmo";
 import { Handles } from "../view/handles";
-import { h } from "../core/dom";
 import { ControlPoints, PointMotion } from "./control_points";
+import { Grip } from "./grip";
 import { LayerDrag } from "./layer_drag";
 import { registerMode, type Mode, type Pointer } from "./mode";
 import { PointsPanel } from "./points_panel";
+import { SelectionFrame } from "./selection_frame";
 import { PointTools, type Axis, type Take } from "./points_tools";
-
-const SLOP = 3; // pixels that a click may wander
-
-interface Grab {
-  at: Vector3;
-  plane: Plane;
-  from: Pointer;
-  motion: PointMotion | null;
-}
 
 export class PointsMode implements Mode {
   readonly id: string = "points";
@@ -35,11 +27,10 @@ export class PointsMode implements Mode {
   protected handles: Handles | null = null;
   private gizmo: Gizmo | null = null;
   private readonly side: PointsPanel;
-  private readonly frame = h("div", { class: "selection-frame", hidden: true });
-  private grab: Grab | null = null;
+  private readonly frame = new SelectionFrame();
+  private grip: Grip | null = null;
   private drag: LayerDrag | null = null;
   private motion: PointMotion | null = null;
-  private corner: Pointer | null = null;
   private hovered: number | null = null;
   private stops: (() => void)[] = [];
   private asked = 0;
@@ -62,7 +53,7 @@ export class PointsMode implements Mode {
     this.gizmo.onBegin = () => this.begin();
     this.gizmo.onMove = (matrix) => this.step((motion) => motion.transform(matrix));
     this.gizmo.onEnd = () => void this.finish();
-    studio.viewport.element.append(this.frame);
+    studio.viewport.element.append(this.frame.element);
     this.stops = [
       studio.session.scene.onChange(() => void this.load()),
       studio.activeLayer.onChange(() => void this.load()),
@@ -76,7 +67,7 @@ export class PointsMode implements Mode {
     for (const stop of this.stops) stop();
     this.handles?.dispose();
     this.gizmo?.dispose();
-    this.frame.remove();
+    this.frame.element.remove();
     this.points = this.handles = this.gizmo = null;
     this.studio.viewport.request();
   }
@@ -121,7 +112,7 @@ export class PointsMode implements Mode {
     const found = group?.[0];
     if (!group || found === undefined) {
       if (!this.tools.now.rectangle && !pointer.shift) return false;
-      this.corner = pointer;
+      this.frame.begin(pointer);
       return true;
     }
     if (pointer.alt) points.choose(this.wholeLayer(found), pointer.shift ? "add" : "only");
@@ -129,27 +120,25 @@ export class PointsMode implements Mode {
     else if (!group.every((index) => points.selected.has(index))) points.choose(group, "only");
     else points.last = found;
     this.look();
-    const at = points.at(found);
-    const plane = new Plane().setFromNormalAndCoplanarPoint(this.studio.viewport.cameras.direction(), at);
-    this.grab = { at, plane, from: pointer, motion: null };
+    this.grip = new Grip(this.studio.viewport, points.at(found), pointer);
     return true;
   }
 
   move(pointer: Pointer): void {
-    if (this.corner) this.stretch(pointer);
-    const { grab } = this;
-    if (!grab) return;
+    if (this.frame.drawing) this.frame.stretch(pointer);
+    const { grip } = this;
+    if (!grip) return;
     if (!this.motion) {
-      if (Math.hypot(pointer.x - grab.from.x, pointer.y - grab.from.y) < SLOP || !this.points?.selected.size) return;
+      if (!grip.dragged(pointer) || !this.points?.selected.size) return;
       this.begin();
     }
-    const [from, to] = [this.onPlane(grab.from, grab), this.onPlane(pointer, grab)];
-    if (from && to) this.step((motion) => motion.translate(this.tools.restrained(to.sub(from))));
+    const by = grip.moved(pointer, this.tools.now.axis, this.tools.diagonal);
+    if (by) this.step((motion) => motion.translate(this.tools.restrained(by)));
   }
 
   up(pointer: Pointer): void {
-    if (this.corner) this.takeRectangle(pointer);
-    this.grab = null;
+    if (this.frame.drawing) this.takeRectangle(pointer);
+    this.grip = null;
     if (this.motion) void this.finish();
   }
 
@@ -269,7 +258,7 @@ export class PointsMode implements Mode {
   private escape(): void {
     if (this.motion) {
       this.motion.undo();
-      this.motion = this.grab = null;
+      this.motion = this.grip = null;
       void this.drag?.cancel();
       this.drag = null;
       this.handles?.move();
@@ -346,40 +335,10 @@ export class PointsMode implements Mode {
     await this.studio.ask("points.lock", { layer: points.layer, locked }, { index: Uint32Array.from(points.selected) });
   }
 
-  private stretch(pointer: Pointer): void {
-    const [left, right] = [this.corner!.x, pointer.x].sort((a, b) => a - b) as [number, number];
-    const [top, bottom] = [this.corner!.y, pointer.y].sort((a, b) => a - b) as [number, number];
-    this.frame.hidden = false;
-    Object.assign(this.frame.style, {
-      left: `${left}px`,
-      top: `${top}px`,
-      width: `${right - left}px`,
-      height: `${bottom - top}px`,
-    });
-  }
-
   private takeRectangle(pointer: Pointer): void {
-    const from = this.corner!;
-    this.corner = null;
-    this.frame.hidden = true;
-    const found = this.handles!.within(
-      Math.min(from.x, pointer.x),
-      Math.min(from.y, pointer.y),
-      Math.max(from.x, pointer.x),
-      Math.max(from.y, pointer.y),
-    );
-    this.points?.choose(found, from.shift ? "add" : "only");
+    const { left, top, right, bottom, shift } = this.frame.end(pointer);
+    this.points?.choose(this.handles!.within(left, top, right, bottom), shift ? "add" : "only");
     this.look();
-  }
-
-  private onPlane(pointer: Pointer, { at, plane }: Grab): Vector3 | null {
-    const { ray } = this.studio.viewport.ray(pointer.x, pointer.y);
-    const { axis } = this.tools.now;
-    if (axis === null) return ray.intersectPlane(plane, new Vector3());
-    const along = new Vector3().setComponent(axis, 1e6 * this.tools.diagonal);
-    const nearest = new Vector3();
-    ray.distanceSqToSegment(at.clone().sub(along), at.clone().add(along), undefined, nearest);
-    return nearest;
   }
 
   /** The lattice axis that looks most towards the eye: its layers are what Alt-click takes. */

@@ -55,6 +55,8 @@ export interface Layer {
   shape: [number, number, number] | null;
   linear: boolean;
   transform: boolean;
+  /** Whether it has an axis to take hold of. */
+  axial: boolean;
 }
 
 export interface MeshFacts {

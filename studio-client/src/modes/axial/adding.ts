@@ -18,8 +18,6 @@ const KINDS: readonly (readonly [string, IconName])[] = [
   ["scale", "scale"],
 ];
 
-export const AXIAL_KINDS = KINDS.map(([kind]) => kind);
-
 export function axialToolbar(studio: Studio, snap: boolean, onSnap: (on: boolean) => void): HTMLElement {
   const add = async (kind: string): Promise<void> => {
     const answer = await studio.ask("layers.add", { kind, fields: kind === "sine" ? { normal: "x" } : {} });

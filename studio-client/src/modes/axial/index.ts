@@ -10,7 +10,7 @@ import { Handles } from "../../view/handles";
 import { Tags } from "../../view/tags";
 import { LayerDrag } from "../layer_drag";
 import { registerMode, type Mode, type Pointer } from "../mode";
-import { AXIAL_KINDS, axialToolbar } from "./adding";
+import { axialToolbar } from "./adding";
 import { HandleSet, type Role } from "./handle_set";
 import { axialPanel } from "./panel";
 import { axialTour } from "./tour";
@@ -141,16 +141,15 @@ class AxialMode implements Mode {
 
   /** Where the active layer has no axis, take the topmost that has. */
   private preferAxial(): void {
-    const has = (kind: string | undefined): boolean => AXIAL_KINDS.includes(kind ?? "");
-    if (has(this.studio.layer?.kind)) return;
-    const other = this.studio.scene?.layers.findLast((layer) => has(layer.kind));
+    if (this.studio.layer?.axial) return;
+    const other = this.studio.scene?.layers.findLast((layer) => layer.axial);
     if (other) this.studio.activeLayer.set(other.name);
   }
 
   private async load(): Promise<void> {
     const { layer } = this.studio;
     if (this.drag) return;
-    const answer = layer && AXIAL_KINDS.includes(layer.kind) ? await this.studio.ask("axial.get", { layer: layer.name }) : null;
+    const answer = layer?.axial ? await this.studio.ask("axial.get", { layer: layer.name }) : null;
     if (!this.handles || this.drag) return;
     this.set = layer && answer ? new HandleSet(layer.name, answer) : null;
     this.handles.load(this.set?.positions ?? new Float64Array(), new Uint32Array());

@@ -5,7 +5,6 @@ import { t, tWord } from "../../core/strings";
 import { button, numberField, row, segments, shortNumber } from "../../panels/controls";
 import type { Studio } from "../../studio";
 import type { Layer } from "../../transport/protocol";
-import { AXIAL_KINDS } from "./adding";
 
 const PROFILES = ["ramp", "smooth", "constant", "bump"] as const;
 const AXES = ["x", "y", "z"] as const;
@@ -19,7 +18,7 @@ export function axialPanel(studio: Studio): HTMLElement {
     const key = JSON.stringify([layer?.name, layer?.fields, layer?.kind]);
     if (key === shown) return;
     shown = key;
-    if (!layer || !AXIAL_KINDS.includes(layer.kind)) replace(body, h("p", { class: "muted" }, t("noAxis")));
+    if (!layer?.axial) replace(body, h("p", { class: "muted" }, t("noAxis")));
     else replace(body, ...rows(studio, layer));
   };
   studio.session.scene.watch(show);
