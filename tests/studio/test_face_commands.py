@@ -11,6 +11,7 @@ from PIL import Image
 
 import pliant as pl
 from pliant.face.networks import MissingNetworks
+from pliant.face.topology import opposite
 from pliant.studio import faces
 from pliant.studio.samples import ball
 
@@ -126,6 +127,25 @@ def test_a_photograph_of_no_face_says_so_and_changes_nothing(opened, tmp_path):
     page.ask(session, "face.open", {"upload": sent(session, page, skimage.data.astronaut(), tmp_path), "number": 4})
     until(session, lambda: len(page.events("failure")) > 1)
     assert "there is no face 4" in page.events("failure")[-1].head["message"]
+
+
+def test_the_faces_of_a_photograph_are_gone_through(opened, tmp_path):
+    session, page = opened
+    one = skimage.data.astronaut()[:300, 100:350]
+    smaller = np.asarray(Image.fromarray(one).resize((200, 240)))
+    both = np.full((300, 500, 3), 128, np.uint8)
+    both[:, :250], both[30:270, 275:475] = one, smaller[:, ::-1]
+    page.ask(session, "face.open", {"upload": sent(session, page, both, tmp_path)})
+    until(session, lambda: "Caricature" in session.scene.stack.names)
+    first = session.scene.stack["Caricature"].deformer.landmarks
+    assert page.ask(session, "face.get", LAYER).head["count"] == 2
+    page.ask(session, "face.other", {"number": 1})
+    until(session, lambda: session.beside.get("photograph", (None, 0, 0))[1] == 1)
+    second = session.scene.stack["Caricature"].deformer.landmarks
+    apart = np.abs(
+        second * [-1, 1, 1] - first[opposite()]
+    ).max()  # the same face in a mirror, but for the network's noise
+    assert 0.01 < apart < 1.0
 
 
 def test_a_missing_extra_is_told_with_the_command_that_brings_it(opened, monkeypatch):
