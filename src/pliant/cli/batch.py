@@ -24,7 +24,9 @@ def batch(
         list[str],
         typer.Argument(metavar="MESH...", show_default=False, help="Files, or patterns such as 'cohort/*.ply'."),
     ],
-    recipe: Annotated[str, typer.Option("--recipe", "-r", metavar="RECIPE", help="A .toml, a .pliant, or a template's name.")],
+    recipe: Annotated[
+        str, typer.Option("--recipe", "-r", metavar="RECIPE", help="A .toml, a .pliant, or a template's name.")
+    ],
     output: Annotated[
         str,
         typer.Option(

@@ -58,7 +58,7 @@ class CellGrid:
         return np.asarray((self.counts - 1) * self.stride + 4, np.int64)
 
     def powers(self, lattice: Floats) -> Floats:
-        """A lattice (x, y, z, 3) as :func:`pliant.numerics.tricubic.evaluate` takes it: polynomials along z."""
+        """A lattice (x, y, z, 3) as the kernel that evaluates takes it: polynomials along z."""
         windows = sliding_window_view(lattice, 4, axis=2)[:, :, :: self.stride].reshape(-1, 4)
         powers = np.zeros(windows.size + 4)
         np.matmul(windows, self.basis.T, out=powers[:-4].reshape(-1, 4))
@@ -254,7 +254,7 @@ def evaluate_once(grid: CellGrid, points: Floats, lattice: Floats, base: Floats,
 
 
 def swept(lattice: Floats) -> tuple[Floats, Integers]:
-    """A lattice (x, y, z, 3) as :mod:`pliant.numerics.tricubic_sweep` takes it, flat, and (3,) its shape there."""
+    """A lattice (x, y, z, 3) as a sweep takes it, flat, and (3,) its shape there."""
     x, y, z = lattice.shape[:3]
     shape = np.array([x, y, z + z % 2], np.int64)
     twice = _on_cache_lines((2, *shape, 4))
