@@ -9,7 +9,7 @@ import { Viewport } from "./viewport";
 export class SideView {
   readonly viewport: Viewport;
   private readonly title = h("span", { class: "side-title" });
-  private readonly stage: HTMLElement;
+  private stage: HTMLElement | null = null;
   private stops: (() => void)[] = [];
   private linked = false;
 
@@ -21,12 +21,10 @@ export class SideView {
   ) {
     const context = studio.viewport.renderer.getContext().getContextAttributes();
     this.viewport = new Viewport(context?.antialias ?? true);
-    this.stage = studio.viewport.element.parentElement!;
     this.title.textContent = title;
     this.viewport.element.classList.add("side", place);
     this.viewport.element.append(this.title);
-    this.stage.append(this.viewport.element);
-    this.stage.classList.add("split", `split-${place}`);
+    this.attach();
     this.stops.push(listenOn(this.viewport, () => taker), studio.settings.all.watch(() => this.applySettings()));
     this.fit();
   }
@@ -47,8 +45,7 @@ export class SideView {
 
   close(): void {
     for (const stop of this.stops) stop();
-    this.stage.classList.remove("split", `split-${this.place}`);
-    this.viewport.element.remove();
+    this.detach();
     this.viewport.dispose();
     this.fit();
   }
@@ -71,7 +68,23 @@ export class SideView {
     to.request();
   }
 
+  /** Stand where the main view stands: another language builds that place anew. */
+  private attach(): void {
+    const stage = this.studio.viewport.element.parentElement!;
+    if (stage === this.stage) return;
+    this.detach();
+    this.stage = stage;
+    stage.append(this.viewport.element);
+    stage.classList.add("split", `split-${this.place}`);
+  }
+
+  private detach(): void {
+    this.stage?.classList.remove("split", `split-${this.place}`);
+    this.viewport.element.remove();
+  }
+
   private applySettings(): void {
+    this.attach();
     const { now } = this.studio.settings;
     this.viewport.cameras.setUp(now.up);
     this.viewport.cameras.setOrthographic(now.orthographic);

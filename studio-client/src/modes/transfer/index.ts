@@ -91,7 +91,10 @@ class TransferMode implements Mode {
       studio.activeLayer.onChange(() => void this.loadKeys()),
       studio.meshLoaded.onChange(() => void this.load()),
       studio.pointsMoved.onChange(() => this.target?.follow()),
-      studio.settings.all.watch((settings) => mesh.apply(settings, studio.palette)),
+      studio.settings.all.watch((settings) => {
+        mesh.apply(settings, studio.palette);
+        this.look();
+      }),
     ];
     void this.load();
   }
