@@ -16,7 +16,7 @@ from reliability.readers import ACCEPTED, IN_A_PROCESS, attempt
 from reliability.seeds import CORPUS, KINDS, corpus
 
 COUNT = int(os.environ.get("PLIANT_FUZZ", "110"))
-SLOW = max(1, COUNT // 50)
+SLOW = max(1, COUNT // 100)
 
 
 @pytest.mark.parametrize("name", corpus())
