@@ -141,6 +141,16 @@ def test_the_clip_s_own_numbers(moving):
     np.testing.assert_allclose(session.shown.told, clip.sample(0.25).points, atol=1e-12)  # on the way back
 
 
+def test_the_playhead_stays_within_the_clip(moving):
+    session, page = moving
+    page.ask(session, "time.goto", {"time": 1.8})
+    page.ask(session, "time.clip", {"duration": 0.5})
+    assert session.time == clip_told(page)["time"] == 0.5
+    np.testing.assert_allclose(session.shown.told, session.scene.clip.sample(0.5).points, atol=1e-12)
+    page.ask(session, "history.undo")
+    np.testing.assert_allclose(session.shown.told, bent_scene().clip.sample(0.5).points, atol=1e-12)
+
+
 def test_keys_follow_a_layer_that_is_renamed_and_go_with_one_that_is_removed(moving):
     session, page = moving
     page.ask(session, "layers.rename", {"layer": "Bend", "name": "Curl"})

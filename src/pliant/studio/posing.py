@@ -33,6 +33,11 @@ def posed(scene: Scene, time: float) -> Scene:
     return scene if clip is None or not clip.tracks else scene.replace(stack=clip.stack_at(time))
 
 
+def within(scene: Scene, time: float) -> float:
+    """A time, or the end of the scene's clip where that comes before."""
+    return min(time, clip_of(scene).duration)
+
+
 def clip_of(scene: Scene) -> Clip:
     """The scene's clip, or a fresh one without keys."""
     return Clip(scene.mesh, scene.stack, **FRESH) if scene.clip is None else scene.clip  # type: ignore[arg-type]

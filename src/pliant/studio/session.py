@@ -26,7 +26,7 @@ from pliant.studio.files import Uploads
 from pliant.studio.frames import Frame, MalformedFrame
 from pliant.studio.history import Entry, History
 from pliant.studio.jobs import Jobs
-from pliant.studio.posing import keyed
+from pliant.studio.posing import keyed, within
 from pliant.studio.request import COMMANDS, Client, Request
 from pliant.studio.samples import samples_folder
 from pliant.studio.stage import Stage
@@ -165,7 +165,9 @@ class Session:
         """Show a scene that has been made of the present one, as a new entry of the history."""
         assert self.history is not None
         scene = keyed(self.required, scene, self.time, self.recording)
-        self.shown.show(scene, self.time)  # where this fails, nothing has happened
+        time = within(scene, self.time)
+        self.shown.show(scene, time)  # where this fails, nothing has happened
+        self.time = time
         self.history.push(Entry(scene, key, subject))
         self.changed()
 
@@ -175,6 +177,7 @@ class Session:
         assert self.history is not None
         self.drop_drag()
         if self.history.go(position):
+            self.time = within(self.history.scene, self.time)
             self.shown.show(self.history.scene, self.time)
             self.changed()
 

@@ -96,8 +96,6 @@ def numbers(session: Session, request: Request) -> None:
     if clip.period * clip.fps > MOST_FRAMES:
         raise InvalidParameter(f"that would be {clip.period * clip.fps:,.0f} frames; {MOST_FRAMES:,} are the most")
     _commit(session, clip, "clip")
-    if session.time > clip.period:
-        session.go_to(clip.duration)
 
 
 @command("time.key")
