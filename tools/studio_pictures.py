@@ -117,7 +117,7 @@ def bends(browser) -> None:
         time.sleep(1)
         at = page.evaluate("window.pliantStudio.probes.axial.screen('angle')")
         page.mouse.move(at["x"], at["y"])
-        save(page, "studio-bend", (920, 575))
+        save(page, "studio-bend", (900, 562))
 
 
 def sites(browser) -> None:
@@ -149,7 +149,7 @@ def rounds(browser) -> None:
         page.locator("canvas").first.focus()
         page.keyboard.press("s")
         time.sleep(1)
-        save(page, "studio-rings", (800, 500))
+        save(page, "studio-rings", (780, 488))
 
 
 def cages(browser) -> None:
