@@ -178,6 +178,7 @@ class CageMode extends PointsMode {
     this.facts.setReport(null);
     const answer = await this.studio.ask("cage.get", { layer: points.layer });
     if (!answer || points.layer !== this.points?.layer) return;
+    this.facts.show(answer.head["coordinates"] as string);
     const { faces, offsets } = answer.arrays;
     this.faces?.load({ corners: faces as Uint32Array, offsets: offsets as Uint32Array }, this.points.now);
     this.look();
