@@ -10,116 +10,31 @@ from __future__ import annotations
 import argparse
 import collections
 import contextlib
-import http.client
-import json
+import itertools
+import os
 import random
 import socket
-import subprocess
-import sys
-import tempfile
 import threading
 import time
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from multiprocessing import get_context
 from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
-from urllib.parse import parse_qs, urlsplit
 
 import numpy as np
 from websockets.exceptions import ConnectionClosed, InvalidStatus
-from websockets.sync.client import ClientConnection, connect
+from websockets.sync.client import ClientConnection
 
-import pliant as pl
-from pliant.studio.frames import Frame
+from pliant.studio.frames import Frame, MalformedFrame
 from reliability.canary import Canary
 from reliability.hostile import asked, frame, request
-from reliability.ledger import publish
+from reliability.ledger import Ledger, publish
+from reliability.siege import MARK, PATIENCE, Studio, studio
 
-PATIENCE = 20  # seconds that an attacker waits for an answer
 ROUND = 25  # frames that an attacker sends through one connection
-MARK = b"the-canary-that-nobody-may-see"
-
-
-@dataclass
-class Studio:
-    """A studio in a process of its own, and what lies around it."""
-
-    folder: Path
-    process: subprocess.Popen[bytes]
-    port: int
-    token: str
-    cookie: str = ""
-
-    @property
-    def secret(self) -> str:
-        """The file that must not be read."""
-        return str(self.folder / "secret" / "key.off")
-
-    def memory(self, name: str = "VmRSS") -> float:
-        """What the process has of memory, or has had at most (VmHWM), in MB."""
-        lines = Path(f"/proc/{self.process.pid}/status").read_text().splitlines()
-        return int(next(line for line in lines if line.startswith(name)).split()[1]) / 1024
-
-    def get(self, path: str) -> http.client.HTTPResponse:
-        """An honest request's answer."""
-        link = http.client.HTTPConnection("127.0.0.1", self.port, timeout=PATIENCE)
-        link.request("GET", path, headers={"cookie": self.cookie} if self.cookie else {})
-        answer = link.getresponse()
-        answer.read()
-        link.close()
-        return answer
-
-    def complaints(self) -> collections.Counter[str]:
-        """What its log says of errors that nobody caught, and how often."""
-        lines = (self.folder / "log").read_text(errors="replace").splitlines()
-        found, within = collections.Counter[str](), False
-        for line in lines:
-            if within and line and not line.startswith((" ", "\t")):
-                found[line[:160]] += 1
-            within = line.startswith("Traceback") or (within and line.startswith(" "))
-        return found
-
-    def connect(self) -> ClientConnection:
-        """A page's connection."""
-        head = {"cookie": self.cookie, "origin": f"http://127.0.0.1:{self.port}"}
-        return connect(f"ws://127.0.0.1:{self.port}/socket", additional_headers=head, max_size=None, open_timeout=60)
-
-
-@contextlib.contextmanager
-def studio() -> Iterator[Studio]:
-    """A studio whose folder lies beside secrets, with a link to them inside."""
-    with tempfile.TemporaryDirectory(prefix="pliant-attack-") as place:
-        folder = Path(place)
-        for name in ("root", "secret", "state"):
-            (folder / name).mkdir()
-        (folder / "root" / "folder").mkdir()
-        pl.write(pl.shapes.box().mesh, folder / "root" / "box.off")
-        pl.write(pl.shapes.box().mesh, folder / "secret" / "key.off")
-        pl.save_project(pl.Scene(pl.shapes.box().mesh, pl.Stack([])), folder / "secret" / "key.pliant")
-        with (folder / "secret" / "key.off").open("ab") as stream:
-            stream.write(b"# " + MARK + b"\n")
-        (folder / "root" / "link.off").symlink_to(folder / "secret" / "key.off")
-        (folder / "root" / "outside").symlink_to(folder / "secret")
-        command = [sys.executable, "-m", "reliability.besieged", str(folder / "root"), str(folder / "state")]
-        with (folder / "log").open("wb") as log:
-            process = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=log)
-        assert process.stdout is not None
-        assert process.stdin is not None
-        told = json.loads(process.stdout.readline())
-        found = Studio(folder, process, told["port"], parse_qs(urlsplit(told["url"]).query)["token"][0])
-        found.cookie = str(found.get(f"/?token={found.token}").getheader("set-cookie")).split(";")[0]
-        try:
-            yield found
-        finally:
-            process.stdin.close()
-            try:
-                process.wait(timeout=20)
-            except subprocess.TimeoutExpired:
-                process.kill()
-                process.wait()
-            process.stdout.close()
+ROUND_OF = 2500  # requests and frames that one studio gets
 
 
 @dataclass
@@ -182,7 +97,11 @@ def _hear(link: ClientConnection, tally: Tally, data: bytes) -> None:
         said = link.recv(timeout=PATIENCE)
         assert isinstance(said, bytes)
         tally.leaked += MARK in said or b"root:x:0" in said
-        answer = Frame.decode(said).head
+        try:
+            answer = Frame.decode(said).head
+        except MalformedFrame:  # numbers beyond single precision: the page would refuse them too
+            tally.answers["no frame"] += 1
+            return
         if "answer" not in answer:
             continue
         kind = answer["error"]["kind"] if "error" in answer else "done"
@@ -201,7 +120,10 @@ def _ask(link: ClientConnection, data: bytes, number: int) -> None:
 def _heard(link: ClientConnection) -> Mapping[str, Any]:
     said = link.recv(timeout=PATIENCE)
     assert isinstance(said, bytes)
-    return Frame.decode(said).head
+    try:
+        return Frame.decode(said).head
+    except MalformedFrame:  # what the attackers have made of the shape
+        return {}
 
 
 def _command(data: bytes) -> str:
@@ -241,10 +163,6 @@ class Honest:
         finally:  # what failed, or never came, counts with the time that was waited for it
             self.asked[kind].append(1e3 * (time.perf_counter() - begin))
 
-    def percentile(self, kind: str, share: float) -> float:
-        """A percentile of the milliseconds."""
-        return float(np.percentile(self.asked[kind] or [0.0], share))
-
 
 def calm(target: Studio, seconds: float) -> Honest:
     """How fast the studio answers while nobody attacks."""
@@ -278,50 +196,86 @@ def attack(target: Studio, count: int, seed: int, attackers: int = 2) -> tuple[H
     return honest, tallies
 
 
-def figures(count: int, seed: int = 0) -> dict[str, Any]:
-    """Attack a studio, and tell what came of it."""
+def round_of(count: int, seed: int) -> dict[str, Any]:
+    """Attack a studio for so long, and tell what came of it."""
     with studio() as target:
-        quiet, before = calm(target, 5.0), target.memory()
+        quiet, before = calm(target, 3.0), target.memory()
         canary = Canary(target.folder / "secret")
         begin = time.monotonic()
         honest, tallies = attack(target, count, seed)
         seconds, touched = time.monotonic() - begin, canary.touched()
         canary.close()
-        alive = target.process.poll() is None and target.get("/alive").status == 204
-        code = target.process.poll()
-        after, peak = (target.memory(), target.memory("VmHWM")) if alive else (0.0, 0.0)
+        lives = target.process.poll() is None and target.get("/alive").status == 204
+        memory = [before, target.memory(), target.memory("VmHWM")] if lives else [before, 0.0, 0.0]
         complaints = target.complaints()
-    sent = sum((tally.sent for tally in tallies), collections.Counter[str]())
-    answers = sum((tally.answers for tally in tallies), collections.Counter[str]())
-    slow = collections.Counter[str]()
+    slow: dict[str, float] = {}
     for tally in tallies:
-        for name, worst in tally.slow.items():
-            slow[name] = max(slow[name], round(worst, 2))
-    bugs = {cause: where for tally in tallies for cause, where in tally.bugs.items()}
-    timing = {
-        f"honest {kind}: {share} ms, {when}": round(page.percentile(kind, value), 1)
-        for kind in ("requests", "frames")
-        for when, page in (("calm", quiet), ("attacked", honest))
-        for share, value in (("median", 50), ("p99", 99))
-    }
-    return {"hostile requests": sent["requests"], "hostile frames": sent["frames"], "seconds": round(seconds),
-            "opened outside the root": len(touched), "answers with secrets": sum(tally.leaked for tally in tallies),
-            "lives": alive, "exit code": code, "MB before": round(before), "MB after": round(after),
-            "MB at most": round(peak),
-            "honest answers": sum(map(len, honest.asked.values())), **timing, "bugs": [
-                {"cause": cause, "frame": where} for cause, where in bugs.items()], "uncaught": [
-                {"error": error, "times": times} for error, times in complaints.most_common()],
+        slow |= {name: round(max(worst, slow.get(name, 0.0)), 2) for name, worst in tally.slow.items()}
+    return {
+        "sent": sum((tally.sent for tally in tallies), collections.Counter[str]()),
+        "answers": sum((tally.answers for tally in tallies), collections.Counter[str]()),
+        "seconds": round(seconds), "touched": len(touched), "leaked": sum(tally.leaked for tally in tallies),
+        "lives": lives, "memory": [round(each) for each in memory], "slow": slow, "complaints": complaints,
+        "bugs": {cause: where for tally in tallies for cause, where in tally.bugs.items()},
+        "calm": quiet.asked, "attacked": honest.asked, "load": round(os.getloadavg()[0], 1),
+    }  # fmt: skip
+
+
+def run(count: int, ledger: Ledger, seconds: float) -> None:
+    """Attack one studio after another until so much has been sent, or the time is up."""
+    end = time.monotonic() + seconds
+    rounds = list(ledger)
+    sent = sum(sum(entry["sent"].values()) for entry in rounds)
+    seed = len(rounds)
+    while sent < count and time.monotonic() < end:
+        found = round_of(min(ROUND_OF, count - sent), 1000 * seed)
+        ledger.add(**found)
+        sent += sum(found["sent"].values())
+        seed += 1
+
+
+def summary(ledger: Ledger) -> dict[str, Any]:
+    """The figures of all that a ledger holds."""
+    rounds = list(ledger)
+    sent, answers, complaints = (
+        sum((collections.Counter(entry[name]) for entry in rounds), collections.Counter[str]())
+        for name in ("sent", "answers", "complaints")
+    )
+    timing = {}
+    for when, kind in itertools.product(("calm", "attacked"), ("requests", "frames")):
+        asked = [each for entry in rounds for each in entry[when].get(kind, [])] or [0.0]
+        for name, share in (("median", 50), ("p99", 99)):
+            timing[f"honest {kind}, {when}: {name} ms"] = round(float(np.percentile(asked, share)), 1)
+    slow: dict[str, float] = {}
+    for entry in rounds:
+        slow |= {name: max(worst, slow.get(name, 0.0)) for name, worst in entry["slow"].items()}
+    worst = sorted(slow.items(), key=lambda each: -each[1])[:8]
+    bugs = {cause: where for entry in rounds for cause, where in entry["bugs"].items()}
+    loads = [entry["load"] for entry in rounds]
+    return {"studios": len(rounds), "hostile requests": sent["requests"], "hostile frames": sent["frames"],
+            "seconds": sum(entry["seconds"] for entry in rounds), "loads": f"{min(loads)} to {max(loads)}",
+            "opened outside the root": sum(entry["touched"] for entry in rounds),
+            "answers with secrets": sum(entry["leaked"] for entry in rounds),
+            "studios that lived": sum(entry["lives"] for entry in rounds),
+            "MB before": min(entry["memory"][0] for entry in rounds),
+            "MB at most": max(entry["memory"][2] for entry in rounds),
+            "honest answers": sum(len(times) for entry in rounds for times in entry["attacked"].values()), **timing,
+            "bugs": [{"cause": cause, "frame": where} for cause, where in bugs.items()],
+            "uncaught": [{"error": error, "times": times} for error, times in complaints.most_common()],
             "answers": [{"answer": name, "times": times} for name, times in answers.most_common()],
-            "slowest commands": [{"command": name, "s": worst} for name, worst in slow.most_common(8)]}  # fmt: skip
+            "slowest commands": [{"command": name, "s": seconds} for name, seconds in worst]}  # fmt: skip
 
 
 def main() -> None:
     """Run from the command line."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--count", type=int, default=20_000)
-    parser.add_argument("--seed", type=int, default=0)
+    parser.add_argument("--seconds", type=float, default=float("inf"), help="begin no round after so long")
+    parser.add_argument("--ledger", type=Path, default=Path("attack-ledger.jsonl"))
     options = parser.parse_args()
-    publish("attack", figures(options.count, options.seed))
+    ledger = Ledger(options.ledger)
+    run(options.count, ledger, options.seconds)
+    publish("attack", summary(ledger))
 
 
 if __name__ == "__main__":

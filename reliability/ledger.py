@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import datetime
 import json
+import os
 import platform
 import sys
 from collections.abc import Iterator
@@ -43,16 +44,20 @@ class Ledger:
 
 def circumstances() -> dict[str, Any]:
     """What is needed to judge a figure: day, command, machine, how busy that was."""
-    import os
-
     module = Path(sys.argv[0]).stem
     return {
         "date": datetime.date.today().isoformat(),
-        "command": " ".join(["python -m", f"reliability.{module}", *sys.argv[1:]]),
+        "command": " ".join(["python -m", f"reliability.{module}", *_plain(sys.argv[1:])]),
         "python": platform.python_version(),
         "processors": os.cpu_count(),
         "load": round(os.getloadavg()[0], 1),
     }
+
+
+def _plain(arguments: list[str]) -> list[str]:
+    """Without where the ledger was: that is no part of what was done."""
+    at = arguments.index("--ledger") if "--ledger" in arguments else len(arguments)
+    return arguments[:at] + arguments[at + 2 :]
 
 
 def publish(name: str, figures: dict[str, Any], folder: Path = FIGURES) -> None:

@@ -1,0 +1,80 @@
+"""The page of the documentation, written anew from the figures: `python -m reliability`."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+from reliability.ledger import FIGURES, table
+
+PAGE = FIGURES.parents[1] / "docs" / "reliability.md"
+_HEAD = """# Reliability
+
+What pliant withstands is tried by the programs in `reliability/`, which run once and report; the tests run a little of
+each with every change. Each program goes on where its ledger ends, and writes its figures for machines too
+(`reliability/figures`). The machine has two processors, and other work shared them: loads are in the tables. Figures
+that miss their goal are shown as they are. This page is written by `python -m reliability`.
+"""
+_TRIALS = {
+    "fuzz": """## Damaged files
+
+Files of every kind that pliant reads (meshes, transforms, shape models, projects, landmarks, recipes, motions, images,
+pairs, weights of cages, CAD parts) are damaged: cut, flipped, spliced, numbers replaced, and inside their packings, so
+that checksums still hold. Each mutant is read in a process that may take 10 s of the processor and 1 GiB for it; what
+is accepted is looked at: every position finite, every index in its range, the stack of a project evaluated, a transform
+applied. Broken are a crash, a hang, more memory, an error that is not pliant's, or something unsound that was accepted:
+the goal is none.""",
+    "fidelity": """## There and back
+
+Meshes that installed packages carry, and generated ones with polygons of any size, seams, corners without coordinates,
+names, attributes, lines and unused vertices, are written to every format and read again: order, polygons, texture
+coordinates and normals at corners, groups, objects, materials, lines and attributes are compared. Whatever differs must
+have been declared in the writer's report: the goal is no undeclared change.""",
+    "mathematics": """## Laws
+
+Cases of each deformer with structure, controls and targets drawn at random, over six orders of size. At rest nothing
+moves (1e-12 of the diagonal); pushed and pulled derivatives are transposes (1e-10); they (1e-6) and Jacobians (1e-6)
+agree with finite differences. "Kinks" are points where a map is not smooth within a difference's reach, which are left
+out; "refused" are cases that the deformer refuses with its own error, as a bend tighter than the shape is thick.""",
+    "peers": """## Peers
+
+Where other programs do the same thing, they must agree; differences are parts of the points' extent.""",
+    "saving": """## Saving
+
+Processes that save are killed (SIGKILL) at random moments; afterwards the file must be whole: the old version or the
+new one. Where there is no room, on a small disk that is full or under a limit for the size of files, the error must be
+pliant's own, the old file must be as it was, and nothing may be left beside it.""",
+    "attack": """## The studio under attack
+
+Attackers without a key send requests, attackers with one send frames as a page gone mad would: every command there is,
+with values that are nearly right, wrong or damaged. Linux watches the folder beside the studio's own: nobody may open a
+file there. An honest page asks meanwhile; the goal is 200 ms for 99 of 100 answers, with the load that there was.""",
+    "losing": """## Batches
+
+A batch on a Dask cluster of processes whose workers are killed, and that is shut down when half is done; the next
+cluster goes on by the ledger. Every job has exactly one outcome, and the files are those of a serial run, bit
+for bit.""",
+}
+
+
+def page() -> str:
+    """The whole page."""
+    parts = [_HEAD]
+    for name, words in _TRIALS.items():
+        path = FIGURES / f"{name}.json"
+        if path.exists():
+            parts += [words, _section(json.loads(path.read_text()))]
+    return "\n\n".join(part.strip() for part in parts) + "\n"
+
+
+def _section(figures: dict[str, Any]) -> str:
+    told = f"{figures.pop('date')}, `{figures.pop('command')}`, Python {figures.pop('python')}, "
+    told += f"{figures.pop('processors')} processors, load {figures.pop('load')}."
+    for row in figures.get("bugs", []):
+        row.pop("frame", None)
+    return f"{told}\n\n{table(figures)}"
+
+
+if __name__ == "__main__":
+    Path(PAGE).write_text(page())
