@@ -1,8 +1,10 @@
 """A model by hand: coefficients, and landmarks that correct them."""
 
+from functools import cache
+
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import pliant as pl
@@ -23,6 +25,7 @@ def ring():
     return pl.PolygonMesh(full.points, full.faces)
 
 
+@cache
 def models():
     """One whose fields serve all coordinates, and the same with fields of its own for each."""
     scalar = pl.ShapeModel.from_kernel(ring(), pl.GaussianKernel(sigma=1.0, scale=0.2), rank=12)
@@ -67,6 +70,7 @@ def test_the_coefficients_it_tells_are_those_of_its_shape(model):
     np.testing.assert_allclose(shape.points, shape(ring()).points, atol=1e-12)
 
 
+@settings(deadline=None, max_examples=30)
 @given(seed=st.integers(0, 1000), vertex=st.integers(0, 287))
 def test_a_new_landmark_moves_nothing(seed, vertex):
     for model in models().values():
@@ -130,5 +134,9 @@ def test_what_it_cannot_take_is_named(model):
         ConditionedModel(model, vertices=[1], positions=[[np.nan, 0, 0]])
     with pytest.raises(InvalidParameter, match="noise"):
         ConditionedModel(model, vertices=[1], noise=0.0)
+    with pytest.raises(InvalidParameter, match="vertex 9999 is not in the model"):
+        ConditionedModel(model).with_landmark(9999)
+    with pytest.raises(InvalidParameter, match="it has 1, counted from 0"):
+        ConditionedModel(model).with_landmark(3).without_landmarks([1])
     with pytest.raises(InvalidTarget, match="a model moves its own mesh"):
         ConditionedModel(model)(torus(12, 12))

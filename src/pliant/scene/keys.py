@@ -34,12 +34,22 @@ def key_of(*parts: Any) -> bytes:
 
 def array_key(array: NDArray[Any]) -> bytes:
     """The key of an array's type, shape and numbers; of large read-only ones it is remembered while they live."""
-    if array.nbytes >= _REMEMBERED and not array.flags.writeable and array.flags.owndata:
+    if array.nbytes >= _REMEMBERED and _settled(array):
         if id(array) not in _known:
             _known[id(array)] = _hashed(array)
             weakref.finalize(array, _known.pop, id(array), None)
         return _known[id(array)]
     return _hashed(array)
+
+
+def _settled(array: NDArray[Any]) -> bool:
+    """Whether nobody can write the numbers: the array is read-only, and so is all that it is a view of."""
+    base: Any = array
+    while isinstance(base, np.ndarray):
+        if base.flags.writeable:
+            return False
+        base = base.base
+    return base is None or isinstance(base, bytes)
 
 
 def structure_key(deformer: Deformer) -> bytes:

@@ -118,17 +118,38 @@ class ConditionedModel(Deformer):
         return self.model.posterior(self._chosen, self.positions, noise=self.noise)
 
     def with_landmark(self, vertex: int) -> Self:
-        """With one more landmark, where the shape has it now: nothing moves."""
-        place = self.model.basis.rows(np.array([vertex])).apply(self.corrected) + self.model.mean[[vertex]]
-        return replace(
-            self,
-            vertices=np.append(self._chosen, vertex),
-            positions=np.vstack([np.asarray(self.positions), place]),
-        )
+        """With one more landmark, where the shape has it now: nothing moves.
+
+        Parameters
+        ----------
+        vertex
+            Which vertex of the model.
+
+        Raises
+        ------
+        InvalidParameter
+            The model has no such vertex.
+        """
+        chosen = checked_vertices([vertex], len(self.model.mean))
+        place = self.model.basis.rows(chosen).apply(self.corrected) + self.model.mean[chosen]
+        seen = np.vstack([np.asarray(self.positions), place])
+        return replace(self, vertices=np.append(self._chosen, chosen), positions=seen)
 
     def without_landmarks(self, places: ArrayLike) -> Self:
-        """Without some landmarks, by their places (j,) in the list of them."""
-        kept = np.delete(np.arange(len(self._chosen)), np.asarray(places, np.int64))
+        """Without some landmarks.
+
+        Parameters
+        ----------
+        places
+            (j,) which, by their places in the list of them.
+
+        Raises
+        ------
+        InvalidParameter
+            There are not so many.
+        """
+        left_out = checked_vertices(places, len(self._chosen))
+        kept = np.delete(np.arange(len(self._chosen)), left_out)
         return replace(self, vertices=self._chosen[kept], positions=np.asarray(self.positions)[kept])
 
     def bind(self, target: Target) -> ConditionedBinding:
