@@ -82,6 +82,7 @@ export class SkeletonShow {
   /** Colour its points by what their vertices are in, mostly. */
   paint(marks: Uint8Array = this.marks): void {
     this.marks = marks;
+    this.side?.setTitle(t("skeleton"));
     const count = this.points.length / 3;
     if (!this.handles || !count) return;
     const totals = new Uint32Array(count);

@@ -163,7 +163,6 @@ class TransferMode implements Mode {
     });
     this.source.mesh.apply(this.studio.settings.now, this.studio.palette);
     this.pending = { source: null, target: null };
-    this.side.setTitle(`${t("sourceShape")}: ${this.state.name}`);
     requestAnimationFrame(() => this.frameSource());
   }
 
@@ -266,6 +265,7 @@ class TransferMode implements Mode {
   /** Markers in both views, and the panel. */
   private look(panel = true): void {
     if (!this.side) return;
+    this.side.setTitle(this.state.name === null ? t("sourceShape") : `${t("sourceShape")}: ${this.state.name}`);
     const markers = this.player.playing ? [] : this.state.markers; // nothing stands before what plays
     const fits = (which: 0 | 1, count: number): number[] => markers.map((pair) => pair[which]).filter((vertex) => vertex < count);
     this.source?.show(this.source.mesh.pointCount ? fits(0, this.source.mesh.pointCount) : [], this.pending.source, this.lit);
