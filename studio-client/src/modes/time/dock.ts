@@ -117,6 +117,7 @@ export class Dock {
     this.line.hidden = x < 0 || x > span.width;
     this.line.style.left = `${this.area.offsetLeft + x}px`;
     this.ruler.place();
+    this.list.place();
     this.bar.place();
   }
 

@@ -22,6 +22,7 @@ export class Ruler {
     const { fps, duration } = clip ?? { fps: 24, duration: 1 };
     const { major, minor } = span.ticks(fps);
     const end = span.x(duration);
+    const frames = major.some((time) => !isTwentieth(time));
     this.element.setAttribute("width", String(span.width));
     const kept = Array.from({ length: Math.round(duration * fps) + 1 }, (_, i) => i).filter((frame) => player.has(frame));
     const wide = Math.max(span.x(1 / fps) - span.x(0), 1);
@@ -29,7 +30,7 @@ export class Ruler {
       s("rect", { class: "lasts", x: span.x(0), y: 0, width: Math.max(end - span.x(0), 0), height: HEIGHT }),
       ...minor.map((time) => s("line", { class: "minor", x1: span.x(time), x2: span.x(time), y1: HEIGHT - 5, y2: HEIGHT })),
       ...major.map((time) => s("line", { x1: span.x(time), x2: span.x(time), y1: HEIGHT - 9, y2: HEIGHT })),
-      ...major.map((time) => s("text", { x: span.x(time) + 4, y: 12 }, said(time, fps))),
+      ...major.map((time) => s("text", { x: span.x(time) + 4, y: 12 }, said(time, fps, frames))),
       ...kept.map((frame) => s("rect", { class: "kept", x: span.x(frame / fps) - wide / 2, y: HEIGHT - 2, width: wide, height: 2 })),
       this.head,
     );
@@ -70,8 +71,7 @@ export class Ruler {
   }
 }
 
-/** A tick in seconds, or in frames where it is none of a tenth. */
-function said(time: number, fps: number): string {
-  const tenths = Math.abs(time * 20 - Math.round(time * 20)) < 1e-6;
-  return tenths ? `${Number(time.toFixed(2))} s` : `${Math.round(time * fps)}`;
-}
+/** A tick in seconds, or in frames where these are no round numbers of seconds. */
+const said = (time: number, fps: number, frames: boolean): string => (frames ? `${Math.round(time * fps)}` : `${Number(time.toFixed(2))} s`);
+
+const isTwentieth = (time: number): boolean => Math.abs(time * 20 - Math.round(time * 20)) < 1e-6;

@@ -30,11 +30,19 @@ export const fieldTitle = (field: string): string => tWord("field_", field).repl
 export class TrackList {
   readonly element = h("div", { class: "track-list", role: "list" });
 
+  private values: [HTMLElement, TrackState][] = [];
+
   constructor(private readonly model: ClipModel) {}
 
   show(rows: Row[], chosen: TrackState | null, choose: (track: TrackState) => void): void {
     const active = this.model.studio.activeLayer.value;
+    this.values = [];
     replace(this.element, ...rows.map((row) => (row.track ? this.track(row.track, chosen, choose) : this.layer(row.layer, active))));
+  }
+
+  /** The playhead is elsewhere: the values are those there. */
+  place(): void {
+    for (const [element, track] of this.values) element.textContent = valueAt(track, this.model.player.time.value);
   }
 
   private layer(name: string, active: string | null): HTMLElement {
@@ -51,11 +59,13 @@ export class TrackList {
     const { model } = this;
     const same = chosen?.layer === track.layer && chosen.field === track.field;
     const title = fieldTitle(track.field);
+    const value = h("span", { class: "track-value" });
+    this.values.push([value, track]);
     return h(
       "div",
       { class: `track-row${same ? " chosen" : ""}`, role: "listitem", "data-track": `${track.layer}/${track.field}` },
       h("button", { type: "button", class: "track-name", onclick: () => choose(track) }, title),
-      h("span", { class: "track-value" }, valueAt(track, model.player.time.value)),
+      value,
       iconButton("key", `${t("timeSetKey")}: ${title}`, () => void model.setKey(track.layer, [track.field])),
     );
   }
