@@ -91,6 +91,7 @@ export class Tours {
     this.card.addEventListener("keydown", (event) => this.key(event));
     replace(this.element, this.ring, this.card);
     this.place();
+    requestAnimationFrame(() => this.place()); // the panel that it speaks of may come after it
     next.focus({ preventScroll: true });
   }
 
