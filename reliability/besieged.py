@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import sys
 from pathlib import Path
 
@@ -15,7 +16,8 @@ from pliant.studio.samples import torus
 
 
 def main(root: str, state: str) -> None:
-    """Serve until the standard input ends."""
+    """Serve until the standard input ends; templates that are kept stay with its state."""
+    os.environ["PLIANT_TEMPLATES"] = state
     mesh = torus(around=64, across=28)
     scene = Scene(mesh, Stack((Layer("Lattice", BSplineFFD.around(mesh, shape=(4, 4, 4), margin=0.05)),)))
     studio = launch(scene, "ring", port=0, root=Path(root), autosave=Path(state))
