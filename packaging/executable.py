@@ -18,6 +18,7 @@ import urllib.request
 from pathlib import Path
 
 HERE = Path(__file__).parent
+PATIENCE = 1800  # seconds for a command: kernels are compiled, and pictures drawn by software
 LEFT_OUT = {
     "OCP": "parts from CAD, under the LGPL",
     "pxr": "USD",
@@ -65,7 +66,7 @@ def try_out(program: Path) -> None:
 
         def run(*words: str) -> str:
             done = subprocess.run(
-                [program, *words], cwd=folder, env=environment, capture_output=True, text=True, timeout=600
+                [program, *words], cwd=folder, env=environment, capture_output=True, text=True, timeout=PATIENCE
             )
             if done.returncode:
                 raise SystemExit(f"pliant {' '.join(words)} ended with {done.returncode}:\n{done.stderr[-3000:]}")

@@ -71,7 +71,9 @@ def in_order(navigation: Any, site: Path) -> Iterator[Path]:
 
 def whole(site: Path, paths: list[Path]) -> str:
     """One page of all pages' articles; pictures are found from where it lies."""
-    version = re.search(r'"(.*)"', (ROOT / "src" / "pliant" / "_version.py").read_text(encoding="utf-8"))[1]
+    version = re.search(r'__version__ = "(.*)"', (ROOT / "src" / "pliant" / "_version.py").read_text(encoding="utf-8"))[
+        1
+    ]
     cover = (
         f'<div class="title"><h1>pliant</h1><p>Control many points with few.</p><p>Manual, version {version}</p></div>'
     )
