@@ -23,6 +23,7 @@ LEFT_OUT = {
     "OCP": "parts from CAD, under the LGPL",
     "pxr": "USD",
     "alembic3d": "Alembic",
+    "imath": "Alembic",
     "ai_edge_litert": "faces from photographs",
     "dask": "clusters",
     "distributed": "clusters",
@@ -110,7 +111,7 @@ def start_page(program: Path, folder: Path, environment: dict[str, str]) -> None
 
 def size(folder: Path) -> float:
     """Megabytes."""
-    return sum(path.stat().st_size for path in folder.rglob("*") if path.is_file()) / 2**20
+    return sum(path.stat().st_size for path in folder.rglob("*") if path.is_file() and not path.is_symlink()) / 2**20
 
 
 def main() -> None:
