@@ -101,7 +101,8 @@ def start_page(program: Path, folder: Path, environment: dict[str, str]) -> None
             if not line or time.monotonic() > limit:
                 raise SystemExit(f"the studio does not start:\n{seen}")
             seen += line
-        with urllib.request.urlopen(found[0], timeout=60) as answer:
+        browser = urllib.request.build_opener(urllib.request.HTTPCookieProcessor())  # the key is exchanged for a cookie
+        with browser.open(found[0], timeout=60) as answer:
             if b"<script" not in answer.read():
                 raise SystemExit("the studio's page is empty")
     finally:
