@@ -13,6 +13,7 @@ import contextlib
 import itertools
 import os
 import random
+import re
 import socket
 import threading
 import time
@@ -261,7 +262,7 @@ def summary(ledger: Ledger) -> dict[str, Any]:
             "MB at most": max(entry["memory"][2] for entry in rounds),
             "honest answers": sum(len(times) for entry in rounds for times in entry["attacked"].values()), **timing,
             "bugs": [{"cause": cause, "frame": where} for cause, where in bugs.items()],
-            "uncaught": [{"error": error, "times": times} for error, times in complaints.most_common()],
+            "uncaught": [{"error": re.sub(r"(?:/[^\s/]+)+/", "", error), "times": times} for error, times in complaints.items()],
             "answers": [{"answer": name, "times": times} for name, times in answers.most_common()],
             "slowest commands": [{"command": name, "s": seconds} for name, seconds in worst]}  # fmt: skip
 

@@ -59,15 +59,23 @@ def cluster(workers: int) -> Iterator[tuple[LocalCluster, Client]]:
         yield local, client
 
 
-def kill_one(local: LocalCluster, rng: random.Random) -> bool:
-    """Kill a worker that works; False where none does just now: one that dies while it starts is never replaced."""
+def kill_one(local: LocalCluster, rng: random.Random, killed: dict[Any, str]) -> bool:
+    """Kill a worker that works; False where none does just now: one that dies while it starts is never replaced.
+
+    A nanny's worker has started anew when its address is another one than that of the worker that was killed before.
+    """
     known = set(local.scheduler_info["workers"])
-    nannies = [each for each in local.workers.values() if each.worker_address in known and each.process is not None]
-    living = [each.process.pid for each in nannies if each.process.pid is not None]
+    living = [
+        each
+        for each in local.workers.values()
+        if each.worker_address in known and each.process is not None and each.worker_address != killed.get(each.id)
+    ]
     if not living:
         return False
-    with contextlib.suppress(ProcessLookupError):
-        os.kill(rng.choice(living), signal.SIGKILL)
+    nanny = rng.choice(living)
+    killed[nanny.id] = nanny.worker_address
+    with contextlib.suppress(ProcessLookupError, TypeError):
+        os.kill(nanny.process.pid, signal.SIGKILL)
         return True
     return False
 
@@ -83,12 +91,12 @@ def figures(jobs: int, kills: int, workers: int = 2, seed: int = 0) -> dict[str,
         serial = list(pl.run_batch(stack, paths, folder / "serial" / "{stem}.ply", workers=0))
         alone, killed, begin = time.monotonic() - begin, 0, time.monotonic()
         moments = sorted(rng.sample(range(1, jobs), min(kills, jobs - 1)))
-        found, half, resumed = [], jobs // 2, 0
+        found, half, resumed, dead = [], jobs // 2, 0, dict[Any, str]()
         with cluster(workers) as (local, client):
             run = pl.run_batch(stack, paths, folder / "out" / "{stem}.ply", executor=client)
             for number, outcome in enumerate(itertools.islice(run, half)):
                 found.append(outcome)
-                killed += number in moments and kill_one(local, rng)
+                killed += number in moments and kill_one(local, rng, dead)
             run.close()  # the cluster goes with its work half done
         with cluster(workers) as (local, client):
             run = pl.run_batch(stack, paths, folder / "out" / "{stem}.ply", executor=client, resume=True)
@@ -97,7 +105,7 @@ def figures(jobs: int, kills: int, workers: int = 2, seed: int = 0) -> dict[str,
                 rest.append(outcome)
                 resumed += outcome.resumed
                 if not outcome.resumed:
-                    killed += half + len(rest) - resumed in moments and kill_one(local, rng)
+                    killed += half + len(rest) - resumed in moments and kill_one(local, rng, dead)
         seconds = time.monotonic() - begin
         times = collections.Counter(outcome.index for outcome in rest)
         same = sum(_same(folder / "serial" / path.name, folder / "out" / path.name) for path in paths)
