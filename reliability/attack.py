@@ -34,6 +34,7 @@ from reliability.hostile import asked, frame, request
 from reliability.ledger import Ledger, publish
 from reliability.siege import MARK, PATIENCE, Studio, studio
 
+_PLACE = re.compile(r"(?:/[^\s/]+)+/")
 ROUND = 25  # frames that an attacker sends through one connection
 ROUND_OF = 2500  # requests and frames that one studio gets
 
@@ -261,8 +262,9 @@ def summary(ledger: Ledger) -> dict[str, Any]:
             "MB before": min(entry["memory"][0] for entry in rounds),
             "MB at most": max(entry["memory"][2] for entry in rounds),
             "honest answers": sum(len(times) for entry in rounds for times in entry["attacked"].values()), **timing,
-            "bugs": [{"cause": cause, "frame": where} for cause, where in bugs.items()],
-            "uncaught": [{"error": re.sub(r"(?:/[^\s/]+)+/", "", error), "times": times} for error, times in complaints.items()],
+            "bugs": [{"cause": _PLACE.sub("", cause)[:120], "frame": where} for cause, where in bugs.items()],
+            "uncaught": [
+                {"error": _PLACE.sub("", error), "times": times} for error, times in complaints.most_common()],
             "answers": [{"answer": name, "times": times} for name, times in answers.most_common()],
             "slowest commands": [{"command": name, "s": seconds} for name, seconds in worst]}  # fmt: skip
 

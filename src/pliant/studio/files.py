@@ -171,6 +171,7 @@ def inside(root: Path | None, name: str) -> Path:
         raise InvalidParameter("this studio opens no files of the server: start it with --root DIR")
     try:
         path = (root / name).resolve()
+        path.is_file()  # a name that is too long for the system is told here
     except (OSError, ValueError) as error:
         raise InvalidParameter(f"{name[:80]!r} is no path") from error
     if not path.is_relative_to(root):
