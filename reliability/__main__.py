@@ -52,8 +52,8 @@ pliant's own, the old file must be as it was, and nothing may be left beside it.
 Attackers without a key send requests, attackers with one send frames as a page gone mad would: every command there is,
 with values that are nearly right, wrong or damaged. Linux watches the folder beside the studio's own: nobody may open a
 file there. An honest page asks meanwhile; the goal is 200 ms for 99 of 100 answers. It is missed at the loads of this
-run, at which it was missed without any attack too; at a load of ten, a thousand hostile requests and frames left it at
-70 and 56 ms, two thousand at 297 and 296. A page with a key can hold the session for seconds, as commands are done one
+run (in single rounds without any attack too); at a load of ten, a thousand hostile requests and frames left it at 70
+and 56 ms, two thousand at 297 and 296. A page with a key can hold the session for seconds, as commands are done one
 after another. The page's file that was not found was being built anew meanwhile. Mended were a region that grew by as
 many rings as were asked for, without end, and names that are too long.""",
     "losing": """## Batches
