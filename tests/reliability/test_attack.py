@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import pytest
 
-from reliability.attack import knock, rave, studio
+from reliability.attack import knock, rave
 from reliability.canary import Canary
 from reliability.hostile import asked
+from reliability.siege import studio
 
 
 @pytest.fixture(scope="module")
