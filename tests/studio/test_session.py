@@ -140,6 +140,13 @@ def test_a_drag_that_is_given_up_leaves_nothing(edited):
     np.testing.assert_allclose(restored.arrays["positions"].reshape(-1, 3), before.mesh.points[where], atol=1e-6)
 
 
+def test_a_layer_without_control_points_has_none_to_drag(edited):
+    session, page = edited
+    layer = page.ask(session, "layers.add", {"kind": "twist"}).head["layer"]
+    assert "no control points" in page.ask(session, "drag.begin", {"layer": layer}).head["error"]["message"]
+    assert session.dragging is None
+
+
 def test_locked_points_stay(edited):
     session, page = edited
     page.ask(session, "points.lock", {"layer": "Lattice", "locked": True}, index=np.array([5], np.uint32))

@@ -29,6 +29,8 @@ class PointsDrag(Dragging):
         self._deformer = session.required.stack[layer].deformer
         self._drag = session.shown.binding.drag_layer(layer)
         self._controls = self._drag.controls
+        if self._controls.ndim < 2 or self._controls.shape[-1] != 3:
+            raise InvalidParameter(f"layer {layer!r} has no control points: change its fields")
         self._locked = set(session.locked_points(layer).tolist())
 
     def move(self, request: Request) -> tuple[NDArray[np.integer], Points, dict[str, NDArray[Any]]]:
