@@ -143,7 +143,8 @@ def test_a_drag_that_is_given_up_leaves_nothing(edited):
 def test_a_layer_without_control_points_has_none_to_drag(edited):
     session, page = edited
     layer = page.ask(session, "layers.add", {"kind": "twist"}).head["layer"]
-    assert "no control points" in page.ask(session, "drag.begin", {"layer": layer}).head["error"]["message"]
+    session.handle(page, Frame({"id": 1, "do": "drag.begin", "with": {"layer": layer}}, {}).encode())
+    assert "no control points" in page.frames[-1].head["error"]["message"]
     assert session.dragging is None
 
 
