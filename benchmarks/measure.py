@@ -67,7 +67,7 @@ def report(title: str, comparisons: list[Comparison], packages: list[str], notes
 
 def processor() -> str:
     """The machine, as far as it matters."""
-    from pliant.numerics.chunks import processors
+    from pliant.numerics.compute.chunks import processors
 
     try:
         lines = Path("/proc/cpuinfo").read_text().splitlines()

@@ -9,7 +9,7 @@ import numpy as np
 from threadpoolctl import threadpool_limits
 
 from measure import Comparison, report
-from pliant.numerics.bases import bernstein
+from pliant.numerics.lattices.bases import bernstein
 from pliant.space.bend import Bend
 from pliant.space.bezier_ffd import BezierFFD
 from pliant.space.bspline_ffd import BSplineFFD

@@ -22,8 +22,8 @@ from pliant.scene.stack import Stack
 from pliant.space.bend import Bend
 from pliant.space.bspline_ffd import BSplineFFD
 from pliant.space.twist import Twist
-from pliant.studio.launching import launch
-from pliant.studio.samples import torus
+from pliant.studio.examples.samples import torus
+from pliant.studio.serving.launching import launch
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "tests" / "studio"))
 from browser import FLAGS
@@ -63,7 +63,7 @@ def busiest(scene):
 def server_side(size, shape, moves=60):
     """Median CPU milliseconds and bytes of a move."""
     import pliant.studio.commands  # noqa: F401
-    from pliant.studio.frames import Frame
+    from pliant.studio.serving.frames import Frame
     from pliant.studio.session import Session
 
     scene = scene_of(size, shape)
@@ -86,7 +86,7 @@ def server_side(size, shape, moves=60):
 def playing(size, moments=24):
     """Median CPU milliseconds and bytes of a frame that is played for the first time: two layers with keys."""
     import pliant.studio.commands  # noqa: F401
-    from pliant.studio.frames import Frame
+    from pliant.studio.serving.frames import Frame
     from pliant.studio.session import Session
 
     mesh = torus(*SIZES[size])

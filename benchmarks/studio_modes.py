@@ -20,8 +20,8 @@ from pliant.shape.kernels import GaussianKernel
 from pliant.shape.model import ShapeModel
 from pliant.space.bend import Bend
 from pliant.space.cage import Cage
-from pliant.studio.frames import Frame
-from pliant.studio.samples import torus
+from pliant.studio.examples.samples import torus
+from pliant.studio.serving.frames import Frame
 from pliant.studio.session import Session
 from pliant.surface.arap import ARAP
 from pliant.surface.laplacian_edit import LaplacianEdit

@@ -11,8 +11,8 @@ from scipy.sparse.linalg import eigsh
 
 from measure import Comparison, report
 from pliant.mesh import PolygonMesh
-from pliant.numerics.eigenpairs import lowest_eigenpairs
-from pliant.numerics.laplacians import cotangent_weights, laplacian, masses
+from pliant.numerics.meshes.eigenpairs import lowest_eigenpairs
+from pliant.numerics.meshes.laplacians import cotangent_weights, laplacian, masses
 from pliant.surface.arap import ARAP
 from pliant.surface.laplacian_edit import LaplacianEdit
 from pliant.surface.transfer import DeformationTransfer

@@ -28,7 +28,7 @@ import numpy as np
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import ClientConnection
 
-from pliant.studio.frames import Frame, MalformedFrame
+from pliant.studio.serving.frames import Frame, MalformedFrame
 from reliability.canary import Canary
 from reliability.hostile import asked, frame, request
 from reliability.ledger import Ledger, publish

@@ -11,8 +11,8 @@ from pliant.scene.layer import Layer
 from pliant.scene.scene import Scene
 from pliant.scene.stack import Stack
 from pliant.space.bspline_ffd import BSplineFFD
-from pliant.studio.launching import launch
-from pliant.studio.samples import torus
+from pliant.studio.examples.samples import torus
+from pliant.studio.serving.launching import launch
 
 
 def main(root: str, state: str) -> None:

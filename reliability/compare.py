@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pliant.io.colors import as_float, is_color
+from pliant.io.mesh_formats.colors import as_float, is_color
 from pliant.io.report import LossReport
 from pliant.mesh import CornerValues, FaceLabels, PolygonMesh
 

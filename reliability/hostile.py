@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 import pliant.studio.commands  # noqa: F401 -- registers what pages can ask for
-from pliant.studio.frames import Frame
 from pliant.studio.request import COMMANDS
+from pliant.studio.serving.frames import Frame
 from reliability.mutate import damaged
 from reliability.packings import _VALUES, _changed
 

@@ -12,8 +12,8 @@ import numpy as np
 
 import pliant as pl
 from pliant.errors import PliantError, PliantWarning
+from pliant.io.map_formats.transform_options import ReadOptions
 from pliant.io.meshes import read_mesh_bytes
-from pliant.io.transform_options import ReadOptions
 from pliant.io.transforms import transform_format
 from pliant.space.cage import Cage
 from reliability.seeds import BOX, CORPUS, SHAPE

@@ -119,7 +119,7 @@ def test_the_deformer_of_the_contributing_page_is_one_file(tmp_path):
         "import numpy as np\n"
         "from swirl import Swirl\n"
         "from pliant.cli.deformer_options import deformers\n"
-        "from pliant.studio.catalogue import _lasting\n"
+        "from pliant.studio.seen.catalogue import _lasting\n"
         "from pliant.testing import check_deformer\n"
         "check_deformer(Swirl(bounds=(0.0, 2.0), angle=0.7), np.random.default_rng(0).normal(size=(100, 3)))\n"
         "assert np.allclose(Swirl(bounds=(0.0, 2.0), angle=0.7)([[50.0, 0.0, 1.0]]), [[50.0, 0.0, 1.0]])\n"

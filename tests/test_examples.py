@@ -10,7 +10,7 @@ import pytest
 from pliant import examples
 from pliant.errors import InvalidParameter
 from pliant.field.volumes import volume
-from pliant.io.png import png_bytes
+from pliant.io.image_formats.png import png_bytes
 
 
 @pytest.mark.parametrize(("around", "along"), [(12, 9), (96, 72)])

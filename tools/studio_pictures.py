@@ -14,8 +14,7 @@ import numpy as np
 from PIL import Image
 
 import pliant as pl
-from pliant.studio.launching import launch
-from pliant.studio.sample_scenes import (
+from pliant.studio.examples.sample_scenes import (
     astronaut,
     bent_bar,
     caged_vase,
@@ -24,7 +23,8 @@ from pliant.studio.sample_scenes import (
     swallowing_column,
     varying_head,
 )
-from pliant.studio.samples import textured_vase, torus
+from pliant.studio.examples.samples import textured_vase, torus
+from pliant.studio.serving.launching import launch
 
 OUT = Path(__file__).parents[1] / "docs" / "pictures"
 FLAGS = ["--no-sandbox", "--use-gl=angle", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]

@@ -16,8 +16,8 @@ from scipy.sparse.linalg import LinearOperator
 
 from pliant.errors import InvalidControls, InvalidTarget, NonFiniteResult
 from pliant.mesh import CornerValues, Points, PolygonMesh, as_points
-from pliant.numerics.newton import Solution, solve
-from pliant.numerics.normals import carry_normals
+from pliant.numerics.maps.newton import Solution, solve
+from pliant.numerics.maps.normals import carry_normals
 
 Controls = NDArray[np.float64]
 Target = PolygonMesh | ArrayLike

@@ -22,10 +22,10 @@ from pliant.attributes import CornerValues as CornerValues
 from pliant.attributes import FaceLabels as FaceLabels
 from pliant.attributes import Material as Material
 from pliant.errors import InvalidMesh
-from pliant.numerics.adjacency import edge_use, neighbors, unique_edges
-from pliant.numerics.chunks import for_chunks
+from pliant.numerics.compute.chunks import for_chunks
+from pliant.numerics.meshes.adjacency import edge_use, neighbors, unique_edges
+from pliant.numerics.meshes.triangulation import polygon_normals, triangulate
 from pliant.numerics.ragged import Ragged, frozen
-from pliant.numerics.triangulation import polygon_normals, triangulate
 
 Points = NDArray[np.float64]
 

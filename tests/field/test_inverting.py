@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 import pliant as pl
 from pliant.errors import NotConverged
-from pliant.numerics.newton import solve
+from pliant.numerics.maps.newton import solve
 
 BOX = np.array([[0.0, 0, 0], [2.0, 3.0, 1.0]])
 POINTS = np.random.default_rng(3).uniform(BOX[0] - 0.3, BOX[1] + 0.3, (3000, 3))

@@ -9,8 +9,8 @@ import pytest
 
 import pliant as pl
 from pliant.errors import PliantWarning, UnreadableFile, UnsupportedFormat
-from pliant.io import plot3d as plot3d_module
-from pliant.io.transform_options import ReadOptions
+from pliant.io.map_formats import plot3d as plot3d_module
+from pliant.io.map_formats.transform_options import ReadOptions
 from pliant.space.clamped_ffd import ClampedFFD
 
 PRM = """

@@ -9,7 +9,7 @@ import pytest
 
 import pliant as pl
 from pliant.errors import UnreadableFile, UnsupportedFormat
-from pliant.io.gltf_file import packed
+from pliant.io.mesh_formats.gltf_file import packed
 from pliant.io.meshes import read_mesh_bytes
 from pliant.mesh import CornerValues, FaceLabels, Material
 

@@ -10,7 +10,7 @@ import pytest
 
 import pliant as pl
 from pliant.errors import UnreadableFile, UnsupportedFormat
-from pliant.io.mirtk_matrices import matrix_of, parameters_of
+from pliant.io.map_formats.mirtk_matrices import matrix_of, parameters_of
 from pliant.space.compose import Composition, compose
 from pliant.space.summed import Summed
 

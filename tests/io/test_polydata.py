@@ -7,8 +7,8 @@ from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
 import pliant as pl
 from pliant.errors import UnreadableFile, UnsupportedFormat
-from pliant.io import polydata_process, vtp_file
-from pliant.io.format import Source
+from pliant.io.mesh_formats import polydata_process, vtp_file
+from pliant.io.mesh_formats.format import Source
 from pliant.io.meshes import read_mesh_bytes
 
 

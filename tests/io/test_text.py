@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pliant.errors import UnreadableFile
-from pliant.io.format import Source
+from pliant.io.mesh_formats.format import Source
 from pliant.io.text import Lines, bytes_of, number_text, patched, plain_text, read_numbers, text_of
 
 

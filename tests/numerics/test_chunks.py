@@ -5,7 +5,7 @@ import threading
 import numpy as np
 import pytest
 
-from pliant.numerics.chunks import for_chunks
+from pliant.numerics.compute.chunks import for_chunks
 
 
 @pytest.mark.parametrize("count", [0, 1, 9, 10, 11, 95])

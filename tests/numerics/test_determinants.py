@@ -11,10 +11,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pliant.numerics.bases import bernstein
-from pliant.numerics.crossings import CUBIC_FROM_SAMPLES, positive_until, restriction
-from pliant.numerics.determinants import Determinants, halve, halving_error
-from pliant.numerics.polynomial_cells import determinant, dot, inverse, rational
+from pliant.numerics.lattices.bases import bernstein
+from pliant.numerics.lattices.crossings import CUBIC_FROM_SAMPLES, positive_until, restriction
+from pliant.numerics.lattices.determinants import Determinants, halve, halving_error
+from pliant.numerics.lattices.polynomial_cells import determinant, dot, inverse, rational
 from pliant.space.bezier_ffd import BezierFFD
 from pliant.space.bspline_ffd import BSplineFFD
 

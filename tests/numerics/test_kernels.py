@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
 
-from pliant.numerics.bases import BernsteinPoints, bernstein
-from pliant.numerics.cells import BERNSTEIN, BSPLINE, CellGrid, CellPoints, evaluate_once
-from pliant.numerics.newton import invert
-from pliant.numerics.normals import carry_normals, cofactor
+from pliant.numerics.lattices.bases import BernsteinPoints, bernstein
+from pliant.numerics.lattices.cells import BERNSTEIN, BSPLINE, CellGrid, CellPoints, evaluate_once
+from pliant.numerics.maps.newton import invert
+from pliant.numerics.maps.normals import carry_normals, cofactor
 
 EVERYWHERE = np.array([[-np.inf] * 3, [np.inf] * 3])
 

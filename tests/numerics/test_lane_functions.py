@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from pliant.numerics.compiling import kernel
-from pliant.numerics.lane_functions import angle, log_ratio
-from pliant.numerics.lanes import load, spread, store
+from pliant.numerics.compute.compiling import kernel
+from pliant.numerics.compute.lane_functions import angle, log_ratio
+from pliant.numerics.compute.lanes import load, spread, store
 
 
 @kernel

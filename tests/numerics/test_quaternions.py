@@ -8,7 +8,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pliant.numerics.quaternions import axes_of, quaternion_of, rounded_quaternion
+from pliant.numerics.rigid.quaternions import axes_of, quaternion_of, rounded_quaternion
 
 
 @st.composite

@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from pliant.numerics.compiling import kernel
-from pliant.numerics.lanes import load, store
-from pliant.numerics.sincos import sincos
+from pliant.numerics.compute.compiling import kernel
+from pliant.numerics.compute.lanes import load, store
+from pliant.numerics.compute.sincos import sincos
 
 
 @kernel

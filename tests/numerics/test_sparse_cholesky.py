@@ -9,10 +9,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pliant.errors import SingularSystem
-from pliant.numerics import fill_reducing
-from pliant.numerics.elimination import Elimination
-from pliant.numerics.matching import halve
-from pliant.numerics.sparse_cholesky import Cholesky
+from pliant.numerics.sparse import fill_reducing
+from pliant.numerics.sparse.elimination import Elimination
+from pliant.numerics.sparse.matching import halve
+from pliant.numerics.sparse.sparse_cholesky import Cholesky
 
 
 def grid(along: int, across: int, power: int = 1) -> sp.csc_array:

@@ -46,7 +46,7 @@ def test_nobody_reads_outside_the_root_and_the_studio_lives(besieged):
 
 def test_the_folder_itself_is_served(besieged):
     """Else nothing would be learnt from what is refused."""
-    from pliant.studio.frames import Frame
+    from pliant.studio.serving.frames import Frame
 
     with besieged.connect() as link:
         link.send(Frame({"id": 7, "do": "open.path", "with": {"path": "box.off"}}).encode())

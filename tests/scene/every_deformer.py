@@ -51,6 +51,7 @@ def every_deformer() -> dict[str, Deformer]:
         "dirichlet-ffd": _disturbed(pl.DirichletFFD(few, smooth=True)),
         "displacement-grid": pl.DisplacementGrid(displacements=np.full((5, 5, 5, 3), 0.1), **grid, rim=0.5),
         "extended-ffd": _disturbed(pl.ExtendedFFD.cylinder(MESH)),
+        "face-caricature": pl.FaceCaricature(pl.mean_face().points * [1.0, 1.1, 1.0], 0.5, nose=1.5),
         "face-handles": _disturbed(pl.FaceHandles(pl.mean_face().points)),
         "flare": pl.Flare.around(MESH, start=0.5, end=1.4, bulge=0.2),
         "inverse": pl.Inverse(pl.Twist.around(MESH, angle=0.4)),

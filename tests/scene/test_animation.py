@@ -13,10 +13,10 @@ from scene_shapes import MESH, mixed_stack
 
 import pliant as pl
 from pliant.errors import InvalidParameter, MissingExtra, UnreadableFile, UnsupportedFormat, UnwritableFile
-from pliant.io.format import Source
-from pliant.io.gltf_file import opened
+from pliant.io.mesh_formats.format import Source
+from pliant.io.mesh_formats.gltf_file import opened
 from pliant.mesh import CornerValues, FaceLabels, Material
-from pliant.numerics.triangulation import polygon_normals
+from pliant.numerics.meshes.triangulation import polygon_normals
 from pliant.scene.animation.formats import endings
 from pliant.scene.animation.gltf_reading import dense
 

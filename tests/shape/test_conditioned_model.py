@@ -13,7 +13,7 @@ from pliant.scene.layer import Layer
 from pliant.scene.scene import Scene
 from pliant.scene.stack import Stack
 from pliant.shape.conditioned_model import ConditionedModel
-from pliant.studio.samples import torus
+from pliant.studio.examples.samples import torus
 from pliant.testing import check_deformer
 
 VERTICES = [3, 50, 120]

@@ -5,7 +5,7 @@ import pytest
 from scipy.spatial.transform import Rotation
 
 from pliant.errors import InvalidParameter
-from pliant.numerics.rotations import rotations_of
+from pliant.numerics.rigid.rotations import rotations_of
 from pliant.shape.closest_point_chain import ClosestPointDensity
 from pliant.shape.correspondence import Target
 from pliant.shape.kernels import GaussianKernel

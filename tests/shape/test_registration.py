@@ -8,7 +8,7 @@ from scipy.spatial.transform import Rotation
 
 import pliant as pl
 from pliant.errors import InvalidParameter, InvalidTarget, NotConverged
-from pliant.numerics.closest_surface import TriangleSearch
+from pliant.numerics.meshes.closest_surface import TriangleSearch
 from pliant.shape import robust
 from pliant.shape.correspondence import Target, triangle_normals, vertex_normals
 from pliant.shape.procrustes import moved

@@ -7,7 +7,7 @@ import pytest
 
 import pliant as pl
 from pliant.errors import LossRefused, UnreadableFile, UnsupportedFormat
-from pliant.io.model_json import from_json
+from pliant.io.model_formats.model_json import from_json
 from pliant.io.models import is_model
 from pliant.numerics.ragged import Ragged
 from pliant.shape.basis import FullBasis

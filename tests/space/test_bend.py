@@ -11,7 +11,7 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from pliant.errors import InvalidDeformer, NotConverged, PliantWarning
-from pliant.numerics.normals import carry_normals
+from pliant.numerics.maps.normals import carry_normals
 from pliant.space.bend import Bend
 from pliant.testing import check_deformer
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import NdBSpline
 
-from pliant.numerics.clamped import parameters, pieces, spans
+from pliant.numerics.lattices.clamped import parameters, pieces, spans
 from pliant.space.bezier_ffd import BezierFFD
 from pliant.space.clamped_ffd import ClampedFFD
 from pliant.testing import check_deformer

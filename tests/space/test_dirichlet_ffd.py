@@ -8,7 +8,7 @@ from scipy.sparse import csr_array
 from scipy.spatial import ConvexHull, Voronoi, cKDTree
 
 from pliant.errors import InvalidDeformer, InvalidMesh
-from pliant.numerics.ghost_box import FADE, GhostBox
+from pliant.numerics.neighbors.ghost_box import FADE, GhostBox
 from pliant.space.dirichlet_ffd import DirichletFFD
 from pliant.testing import check_deformer
 

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from pliant.errors import InvalidDeformer, InvalidTarget, OutsideDomain
-from pliant.numerics.patch_block import PatchBlock
+from pliant.numerics.lattices.patch_block import PatchBlock
 from pliant.space.extended_ffd import ExtendedFFD
 from pliant.space.lattice_merge import merge
 from pliant.space.round_lattices import ring_radius
@@ -106,7 +106,7 @@ def test_agrees_with_the_tensor_product_term_by_term(name, random):
 @pytest.mark.parametrize("name", MAKERS)
 @pytest.mark.parametrize("radius", [0.1, 1e-3, 1e-6, 1e-9, 0.0])
 def test_every_point_near_the_axis_is_found_within_few_steps(name, radius, random, monkeypatch):
-    from pliant.numerics import hyperpatch
+    from pliant.numerics.lattices import hyperpatch
 
     ffd, steps, invert = MAKERS[name](cloud(), outside="error"), [], hyperpatch.invert
     monkeypatch.setattr(hyperpatch, "invert", lambda *a: (invert(*a), steps.append(a[-1][a[1] : a[2]].max())))

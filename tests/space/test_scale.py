@@ -7,7 +7,7 @@ import pytest
 from barr_cases import POINTS
 
 from pliant.errors import InvalidDeformer, NonFiniteResult
-from pliant.numerics.normals import carry_normals
+from pliant.numerics.maps.normals import carry_normals
 from pliant.space.scale import Scale
 from pliant.testing import check_deformer
 

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pliant.errors import NotConverged
-from pliant.numerics.normals import carry_normals
+from pliant.numerics.maps.normals import carry_normals
 from pliant.space.profile import Profile
 from pliant.space.taper import Taper
 from pliant.testing import check_deformer

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from pliant.errors import InvalidControls, InvalidDeformer, InvalidTarget, NonFiniteResult
-from pliant.numerics.normals import carry_normals
+from pliant.numerics.maps.normals import carry_normals
 from pliant.space.affine import Affine
 from pliant.space.profile import Profile
 from pliant.space.twist import Twist

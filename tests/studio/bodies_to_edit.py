@@ -6,7 +6,7 @@ from pliant.scene.layer import Layer
 from pliant.scene.scene import Scene
 from pliant.scene.stack import Stack
 from pliant.space.bspline_ffd import BSplineFFD
-from pliant.studio.samples import ball, torus
+from pliant.studio.examples.samples import ball, torus
 
 
 def round_scene(shape=(4, 4, 4)):

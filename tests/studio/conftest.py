@@ -28,7 +28,7 @@ def browser():
 @pytest.fixture(scope="session")
 def shared(tmp_path_factory):
     """One studio for all tests that need no other: each begins a scene of its own."""
-    from pliant.studio.launching import launch
+    from pliant.studio.serving.launching import launch
 
     folder = tmp_path_factory.mktemp("studio")
     studio = launch(port=0, root=folder, autosave=folder / "state")
@@ -40,7 +40,7 @@ def shared(tmp_path_factory):
 @pytest.fixture
 def launched(shared, tmp_path):
     """A studio on a scene; with ``own`` one that shares nothing with other tests."""
-    from pliant.studio.launching import launch
+    from pliant.studio.serving.launching import launch
 
     running = []
 

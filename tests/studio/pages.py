@@ -1,6 +1,6 @@
 """Pages without a browser: what they were sent, and what they ask for."""
 
-from pliant.studio.frames import Frame
+from pliant.studio.serving.frames import Frame
 from pliant.studio.session import Session
 
 

@@ -12,12 +12,12 @@ import pliant as pl
 from pliant.scene.kinds import all_kinds
 from pliant.scene.project import load_project, save_project
 from pliant.space.axial import AxialDeformer
-from pliant.studio.axial.following import Ray, followed, snapped
-from pliant.studio.axial.ghost import ghost
-from pliant.studio.axial.handles import TABLE, handles_of
-from pliant.studio.axial.moving import moved_to, rolled_to, turned_to
-from pliant.studio.axial.tool import Tool, size_of
-from pliant.studio.samples import bar
+from pliant.studio.examples.samples import bar
+from pliant.studio.modes.axial.following import Ray, followed, snapped
+from pliant.studio.modes.axial.ghost import ghost
+from pliant.studio.modes.axial.handles import TABLE, handles_of
+from pliant.studio.modes.axial.moving import moved_to, rolled_to, turned_to
+from pliant.studio.modes.axial.tool import Tool, size_of
 
 session_on = contextmanager(joined)
 EYE = np.array([3.0, -9.0, 5.0])

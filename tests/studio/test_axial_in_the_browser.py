@@ -7,7 +7,7 @@ import pytest
 from test_in_the_browser import same_points
 
 import pliant as pl
-from pliant.studio.samples import bar
+from pliant.studio.examples.samples import bar
 
 
 def at(page, name):

@@ -11,8 +11,8 @@ from pages import joined
 import pliant as pl
 from pliant.cages.checking import check_cage
 from pliant.scene.project import load_project, save_project
-from pliant.studio.caging import plane_across, told
-from pliant.studio.samples import bar, egg, torus
+from pliant.studio.examples.samples import bar, egg, torus
+from pliant.studio.modes.caging import plane_across, told
 
 EGG, BAR = egg(40, 24), bar()
 session_on = contextmanager(joined)

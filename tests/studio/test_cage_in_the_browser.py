@@ -7,7 +7,7 @@ from test_in_the_browser import same_points
 
 import pliant as pl
 from pliant.rendering.palette import SEQUENTIAL, color_table
-from pliant.studio.samples import bar, egg
+from pliant.studio.examples.samples import bar, egg
 
 
 def entered(page, direction):

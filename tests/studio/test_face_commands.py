@@ -12,8 +12,8 @@ from PIL import Image
 import pliant as pl
 from pliant.face.networks import MissingNetworks
 from pliant.face.topology import opposite
-from pliant.studio import faces
-from pliant.studio.samples import ball
+from pliant.studio.examples.samples import ball
+from pliant.studio.modes import faces
 
 
 @pytest.fixture

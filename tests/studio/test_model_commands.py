@@ -12,7 +12,7 @@ from pliant.scene.scene import Scene
 from pliant.scene.stack import Stack
 from pliant.shape.conditioned_model import ConditionedModel
 from pliant.studio.commands.opening import main_file, read_scene
-from pliant.studio.samples import torus
+from pliant.studio.examples.samples import torus
 
 
 def soft():

@@ -9,7 +9,7 @@ from pliant.scene.layer import Layer
 from pliant.scene.scene import Scene
 from pliant.scene.stack import Stack
 from pliant.shape.conditioned_model import ConditionedModel
-from pliant.studio.samples import egg
+from pliant.studio.examples.samples import egg
 
 LAYER = "Shape model"
 

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import pliant as pl
-from pliant.studio.sample_scenes import SCENES
+from pliant.studio.examples.sample_scenes import SCENES
 
 MODES = Path(__file__).parents[2] / "studio-client" / "src" / "modes"
 OFFERED = sorted(name for name, each in SCENES.items() if each.there())

@@ -14,8 +14,8 @@ from websockets.exceptions import ConnectionClosed, InvalidStatus
 from websockets.sync.client import connect
 
 from pliant.errors import PliantError
-from pliant.studio.files import MOST_BYTES, inside, safe_name
-from pliant.studio.frames import Frame
+from pliant.studio.serving.files import MOST_BYTES, inside, safe_name
+from pliant.studio.serving.frames import Frame
 
 
 class Visitor:
@@ -52,7 +52,7 @@ class Visitor:
 
 @pytest.fixture(scope="module")
 def visitor(tmp_path_factory):
-    from pliant.studio.launching import launch
+    from pliant.studio.serving.launching import launch
 
     folder = tmp_path_factory.mktemp("studio")
     studio = launch(round_scene(), "ring", port=0, root=folder, autosave=folder / "state")

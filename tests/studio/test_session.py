@@ -8,14 +8,14 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 import pliant as pl
-from pliant.numerics.parity import inside
+from pliant.numerics.coordinates.parity import inside
 from pliant.scene.scene import Scene
 from pliant.studio.autosave import Autosave
-from pliant.studio.drawn import DrawnMesh
-from pliant.studio.frames import TYPES, Frame, MalformedFrame
+from pliant.studio.examples.samples import SAMPLES, ball, torus
 from pliant.studio.history import MOST, Entry, History
-from pliant.studio.quantities import QUANTITIES
-from pliant.studio.samples import SAMPLES, ball, torus
+from pliant.studio.seen.drawn import DrawnMesh
+from pliant.studio.seen.quantities import QUANTITIES
+from pliant.studio.serving.frames import TYPES, Frame, MalformedFrame
 from pliant.studio.session import Session
 
 numbers = st.sampled_from(sorted(TYPES)).flatmap(

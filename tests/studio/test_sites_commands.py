@@ -8,8 +8,8 @@ from pages import joined
 
 import pliant as pl
 from pliant.scene.project import load_project, save_project
-from pliant.studio.lattices import links, places_around
-from pliant.studio.samples import ball, egg
+from pliant.studio.examples.samples import ball, egg
+from pliant.studio.modes.lattices import links, places_around
 
 MESH = egg()
 THIRDS = [1 / 3, 1 / 3, 1 / 3]

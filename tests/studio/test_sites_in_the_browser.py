@@ -5,7 +5,7 @@ from test_in_the_browser import same_points
 
 import pliant as pl
 from pliant.rendering.palette import SEQUENTIAL, color_table
-from pliant.studio.samples import egg
+from pliant.studio.examples.samples import egg
 
 
 def test_sites_are_clicked_onto_the_surface_dragged_and_deleted(launched, view):

@@ -8,7 +8,7 @@ import pliant as pl
 from pliant.scene.layer import Layer
 from pliant.scene.scene import Scene
 from pliant.scene.stack import Stack
-from pliant.studio.samples import bar
+from pliant.studio.examples.samples import bar
 from pliant.studio.session import Session
 from pliant.surface import regions
 from pliant.surface.screen import in_brush, in_lasso

@@ -4,7 +4,7 @@ import numpy as np
 
 import pliant as pl
 from pliant.scene.scene import Scene
-from pliant.studio.samples import bar
+from pliant.studio.examples.samples import bar
 from pliant.surface import regions
 from pliant.surface.screen import in_brush, in_lasso
 

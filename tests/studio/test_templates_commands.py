@@ -13,8 +13,8 @@ from test_time_commands import bent_scene
 import pliant as pl
 import pliant.scene
 from pliant.scene.scene import Scene
-from pliant.studio.previews import Small, preview
-from pliant.studio.samples import ball, torus, vase
+from pliant.studio.examples.samples import ball, torus, vase
+from pliant.studio.seen.previews import Small, preview
 
 OURS = sorted(path.stem for path in Path(pliant.scene.__file__).with_name("template_files").glob("*.toml"))
 

@@ -6,7 +6,7 @@ from test_time_in_the_browser import moving_scene, opened
 
 import pliant as pl
 from pliant.scene.scene import Scene
-from pliant.studio.samples import vase
+from pliant.studio.examples.samples import vase
 
 WIDE, HIGH = 60, 42
 PIXELS = f"""(name) => {{

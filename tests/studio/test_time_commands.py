@@ -7,8 +7,8 @@ from pages import Page, joined
 
 import pliant as pl
 from pliant.scene.scene import Scene
-from pliant.studio.clip_state import track_state
-from pliant.studio.samples import bar
+from pliant.studio.examples.samples import bar
+from pliant.studio.modes.clip_state import track_state
 from pliant.studio.session import Session
 
 

@@ -4,7 +4,7 @@ import numpy as np
 
 import pliant as pl
 from pliant.scene.scene import Scene
-from pliant.studio.samples import bar
+from pliant.studio.examples.samples import bar
 
 
 def moving_scene(fps=10.0, ending="once"):

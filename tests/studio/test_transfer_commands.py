@@ -9,9 +9,9 @@ from pages import joined
 import pliant as pl
 from pliant.io import meshes
 from pliant.scene.scene import Scene
-from pliant.studio.samples import bar
-from pliant.studio.transfer_sample import arm, posed_bar
-from pliant.studio.transferring import read_markers
+from pliant.studio.examples.samples import bar
+from pliant.studio.examples.transfer_sample import arm, posed_bar
+from pliant.studio.modes.transferring import read_markers
 
 ARM = arm()
 BENCH = posed_bar(ARM)

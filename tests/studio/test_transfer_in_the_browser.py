@@ -7,7 +7,7 @@ import numpy as np
 import pliant as pl
 from pliant.io import meshes
 from pliant.scene.scene import Scene
-from pliant.studio.transfer_sample import arm, posed_bar
+from pliant.studio.examples.transfer_sample import arm, posed_bar
 
 PROBE = "window.pliantStudio.probes.transfer"
 ARM = arm()

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from surface_shapes import rotation, sheet, tube
 
 from pliant.mesh import CornerValues, PolygonMesh
-from pliant.numerics.laplacians import cotangent_weights, laplacian, masses
+from pliant.numerics.meshes.laplacians import cotangent_weights, laplacian, masses
 from pliant.surface.arap import ARAP
 from pliant.surface.laplacian_edit import LaplacianEdit
 from pliant.surface.skeleton_edit import SkeletonEdit

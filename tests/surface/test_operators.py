@@ -13,14 +13,14 @@ from hypothesis import strategies as st
 from surface_shapes import sheet, tube, two_legs
 
 from pliant.errors import SingularSystem
-from pliant.numerics import fill_reducing
-from pliant.numerics.closest_triangles import FacingTriangles, project
-from pliant.numerics.eigenpairs import lowest_eigenpairs
-from pliant.numerics.geodesics import geodesic_distance
-from pliant.numerics.gradients import DeformationGradients, plane_gradients
-from pliant.numerics.laplacians import WEIGHTS, cotangent_weights, laplacian, masses, normalized
-from pliant.numerics.rotations import nearest_rotations, rotations_of, turning_vectors
-from pliant.numerics.sparse_cholesky import Cholesky
+from pliant.numerics.meshes.closest_triangles import FacingTriangles, project
+from pliant.numerics.meshes.eigenpairs import lowest_eigenpairs
+from pliant.numerics.meshes.geodesics import geodesic_distance
+from pliant.numerics.meshes.gradients import DeformationGradients, plane_gradients
+from pliant.numerics.meshes.laplacians import WEIGHTS, cotangent_weights, laplacian, masses, normalized
+from pliant.numerics.rigid.rotations import nearest_rotations, rotations_of, turning_vectors
+from pliant.numerics.sparse import fill_reducing
+from pliant.numerics.sparse.sparse_cholesky import Cholesky
 
 
 @settings(max_examples=25, deadline=None)
@@ -43,7 +43,7 @@ def test_it_solves_without_metis_too(monkeypatch):
     mesh = tube(40, 16)
     matrix = sp.csc_array(laplacian(cotangent_weights(mesh.points, mesh.triangles)) + sp.eye_array(len(mesh.points)))
     with_metis = Cholesky(matrix).solve(mesh.points)
-    monkeypatch.setattr("pliant.numerics.sparse_cholesky.nested_dissection", lambda _: None)
+    monkeypatch.setattr("pliant.numerics.sparse.sparse_cholesky.nested_dissection", lambda _: None)
     assert np.abs(Cholesky(matrix).solve(mesh.points) - with_metis).max() < 1e-12
     assert fill_reducing.nested_dissection(matrix) is not None
 

@@ -8,7 +8,7 @@ from surface_shapes import rotation, sheet, tube, two_legs
 
 import pliant as pl
 from pliant.errors import InvalidParameter, InvalidTarget
-from pliant.numerics.laplacians import normalized, uniform_weights
+from pliant.numerics.meshes.laplacians import normalized, uniform_weights
 from pliant.surface import regions
 from pliant.surface.screen import in_brush, in_lasso, in_rectangle
 from pliant.surface.smoothing import METHODS

@@ -13,7 +13,7 @@ from pliant.batch.outcome import Job, Outcome
 from pliant.batch.parcel import Parcel
 from pliant.batch.work import carry_out
 from pliant.errors import InvalidParameter
-from pliant.numerics.chunks import processors
+from pliant.numerics.compute.chunks import processors
 
 _AHEAD = 256  # jobs that wait at an executor whose size is not known
 

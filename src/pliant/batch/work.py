@@ -10,7 +10,7 @@ from pliant.batch.parcel import Parcel
 from pliant.io.files import read_bytes
 from pliant.io.meshes import read_mesh_bytes, write
 from pliant.mesh import PolygonMesh
-from pliant.numerics.one_thread import one_blas_thread
+from pliant.numerics.compute.one_thread import one_blas_thread
 from pliant.scene.cache import Cache
 from pliant.scene.stack import Stack
 from pliant.scene.stack_binding import StackBinding

@@ -10,7 +10,7 @@ import sys
 
 from pliant.cad.files import of_kind, silence
 from pliant.cad.kernel import kernel
-from pliant.io.polydata_child import Refused, limit, refusing
+from pliant.io.mesh_formats.polydata_child import Refused, limit, refusing
 
 
 def main(path: str, out: str, memory: int, seconds: int) -> int:

@@ -12,7 +12,7 @@ from pliant.cad.kernel import kernel
 from pliant.cad.part import Part
 from pliant.errors import UnreadableFile, UnsupportedFormat, UnwritableFile
 from pliant.io.files import read_bytes, replacing
-from pliant.io.polydata_process import run
+from pliant.io.mesh_formats.polydata_process import run
 
 _CURE = "export it again, as STEP AP214 or AP242"
 _STEP, _IGES = (".step", ".stp"), (".iges", ".igs")

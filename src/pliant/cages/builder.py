@@ -14,8 +14,8 @@ from pliant.cages.rings import Ring, branch, cap, polygon_around, tube
 from pliant.cages.sections import Cut, cut_loop, regions, triangle_edges
 from pliant.errors import InvalidParameter, InvalidTarget, NotConverged
 from pliant.mesh import Points, PolygonMesh
+from pliant.numerics.meshes.triangle_crossings import self_crossings
 from pliant.numerics.ragged import Ragged
-from pliant.numerics.triangle_crossings import self_crossings
 
 Floats = NDArray[np.float64]
 

@@ -16,8 +16,8 @@ from pliant.cages.symmetry import checked_axis, symmetrized, with_mirror_image
 from pliant.cages.wrapping import alpha_wrapped
 from pliant.errors import InvalidParameter, InvalidTarget, NotConverged
 from pliant.mesh import Points, PolygonMesh
+from pliant.numerics.meshes.triangle_crossings import self_crossings
 from pliant.numerics.ragged import Ragged
-from pliant.numerics.triangle_crossings import self_crossings
 
 Triangles = NDArray[np.int64]
 

@@ -8,10 +8,10 @@ import numpy as np
 
 from pliant.cages.extras import import_manifold
 from pliant.mesh import PolygonMesh
-from pliant.numerics.closest_surface import TriangleSearch
-from pliant.numerics.manifold import Faults, flat_triangles, manifold_faults, pieces
-from pliant.numerics.triangle_crossings import crossings, self_crossings
-from pliant.numerics.winding import signed_volume, winding_numbers
+from pliant.numerics.coordinates.winding import signed_volume, winding_numbers
+from pliant.numerics.meshes.closest_surface import TriangleSearch
+from pliant.numerics.meshes.manifold import Faults, flat_triangles, manifold_faults, pieces
+from pliant.numerics.meshes.triangle_crossings import crossings, self_crossings
 
 
 @dataclass(frozen=True)

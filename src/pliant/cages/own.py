@@ -5,9 +5,9 @@ from __future__ import annotations
 from pliant.cages.pushing import push_out
 from pliant.errors import InvalidParameter, InvalidTarget, NotConverged
 from pliant.mesh import PolygonMesh
-from pliant.numerics.manifold import manifold_faults
-from pliant.numerics.triangle_crossings import self_crossings
-from pliant.numerics.winding import signed_volume
+from pliant.numerics.coordinates.winding import signed_volume
+from pliant.numerics.meshes.manifold import manifold_faults
+from pliant.numerics.meshes.triangle_crossings import self_crossings
 
 
 def cage_from_mesh(low_poly: PolygonMesh, mesh: PolygonMesh, margin: float = 0.005) -> PolygonMesh:

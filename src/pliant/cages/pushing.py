@@ -6,10 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pliant.mesh import Points, PolygonMesh
-from pliant.numerics.closest_surface import TriangleSearch
-from pliant.numerics.manifold import flat_triangles
-from pliant.numerics.triangle_crossings import crossings
-from pliant.numerics.winding import winding_numbers
+from pliant.numerics.coordinates.winding import winding_numbers
+from pliant.numerics.meshes.closest_surface import TriangleSearch
+from pliant.numerics.meshes.manifold import flat_triangles
+from pliant.numerics.meshes.triangle_crossings import crossings
 
 Floats = NDArray[np.float64]
 Triangles = NDArray[np.integer]

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from pliant.errors import InvalidParameter, InvalidTarget
 from pliant.mesh import Points, PolygonMesh
-from pliant.numerics.manifold import pieces
+from pliant.numerics.meshes.manifold import pieces
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]

@@ -69,8 +69,8 @@ def _make(session: Session, mesh: Path, ffd: Path) -> PolygonMesh:
     """Write the vase with its texture, and the lattice."""
     from pliant import examples
     from pliant.io.files import write_bytes
+    from pliant.io.image_formats.png import png_bytes
     from pliant.io.meshes import read, write
-    from pliant.io.png import png_bytes
     from pliant.io.transforms import write_transform
     from pliant.space.bspline_ffd import BSplineFFD
 

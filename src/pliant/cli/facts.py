@@ -8,9 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pliant.deformer import SpaceDeformer
-from pliant.io.file_facts import FileFacts
 from pliant.io.images import Image
-from pliant.io.zxhproj_header import AFFHeader, FFDHeader
+from pliant.io.map_formats.file_facts import FileFacts
+from pliant.io.map_formats.zxhproj_header import AFFHeader, FFDHeader
 from pliant.mesh import PolygonMesh
 from pliant.space.affine import Affine
 from pliant.space.compose import Composition

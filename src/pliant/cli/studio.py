@@ -32,7 +32,7 @@ def studio(
     """
     with Session(quiet=quiet) as session:
         from pliant.errors import InvalidParameter
-        from pliant.studio.launching import launch
+        from pliant.studio.serving.launching import launch
 
         if root is not None and not root.is_dir():
             raise InvalidParameter(f"{root} is no folder: --root names the one whose files the page may open")
@@ -44,7 +44,7 @@ def studio(
             scene = read_scene(file)
             if ffd is not None:
                 from pliant.io.transforms import read_transform
-                from pliant.studio.layering import with_layer
+                from pliant.studio.modes.layering import with_layer
 
                 stack, _ = with_layer(scene.stack, ffd.stem, read_transform(ffd, target=scene.mesh))
                 scene = scene.replace(stack=stack)

@@ -12,8 +12,8 @@ from pliant.field.grids import checked_box
 from pliant.field.polynomial_range import Extreme, Range, determinant_range
 from pliant.field.rules import certificate_by_rule
 from pliant.mesh import Points
-from pliant.numerics.determinants import Determinants
-from pliant.numerics.polynomial_cells import PolynomialCells
+from pliant.numerics.lattices.determinants import Determinants
+from pliant.numerics.lattices.polynomial_cells import PolynomialCells
 
 _SAMPLES = 32  # along each axis, where nothing can be proved
 _INSIDE = 1e-9  # of a cell: its faces belong to its neighbours too, where the Jacobian may be another

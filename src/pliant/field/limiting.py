@@ -12,8 +12,8 @@ from numpy.typing import NDArray
 from pliant.deformer import SpaceDeformer
 from pliant.errors import InvalidDeformer, InvalidParameter, NotConverged, PliantWarning
 from pliant.field.certifying import certify, determinants_of, polynomial_cells
-from pliant.numerics.crossings import CUBIC_FROM_SAMPLES, positive_until, restriction
-from pliant.numerics.determinants import UNIT, Determinants, halve, halving_error
+from pliant.numerics.lattices.crossings import CUBIC_FROM_SAMPLES, positive_until, restriction
+from pliant.numerics.lattices.determinants import UNIT, Determinants, halve, halving_error
 from pliant.space.placed import Placed
 
 Floats = NDArray[np.float64]

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pliant.numerics.determinants import Determinants, halve, halving_error
+from pliant.numerics.lattices.determinants import Determinants, halve, halving_error
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]

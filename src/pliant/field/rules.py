@@ -12,7 +12,7 @@ import numpy as np
 from pliant.deformer import SpaceDeformer
 from pliant.field.certificate import Certificate, Status
 from pliant.mesh import Points
-from pliant.numerics.polynomial_cells import determinant, rational
+from pliant.numerics.lattices.polynomial_cells import determinant, rational
 from pliant.space.affine import Affine
 from pliant.space.compose import Composition
 from pliant.space.inverse import Inverse

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from pliant.errors import InvalidMesh
 from pliant.mesh import Points, PolygonMesh
-from pliant.numerics.triangulation import polygon_normals
+from pliant.numerics.meshes.triangulation import polygon_normals
 
 
 def volume(mesh: PolygonMesh) -> float:

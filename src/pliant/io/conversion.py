@@ -10,9 +10,9 @@ from numpy.typing import ArrayLike
 
 from pliant.deformer import SpaceDeformer
 from pliant.errors import InvalidParameter, UnsupportedFormat
+from pliant.io.map_formats.transform_format import TransformFormat
+from pliant.io.map_formats.transform_formats import known_endings, transform_format
 from pliant.io.report import LossReport, refuse_losses
-from pliant.io.transform_format import TransformFormat
-from pliant.io.transform_formats import known_endings, transform_format
 from pliant.mesh import PolygonMesh
 from pliant.space.affine import Affine
 from pliant.space.compose import Composition, compose

@@ -53,7 +53,7 @@ class Image:
 
 def is_image(data: bytes) -> bool:
     """Whether the bytes of a file, compressed or not, begin as an image that pliant reads."""
-    from pliant.io import metaimage, nifti
+    from pliant.io.image_formats import metaimage, nifti
 
     head = beginning(data, 4096)
     return nifti.is_nifti(head) or metaimage.is_metaimage(head)
@@ -76,7 +76,7 @@ def read_image(path: Path | str) -> Image:
     MissingExtra
         NIfTI without nibabel.
     """
-    from pliant.io import metaimage, nifti
+    from pliant.io.image_formats import metaimage, nifti
 
     path = Path(path)
     data = read_bytes(path)
@@ -110,7 +110,7 @@ def write_image(image: Image, path: Path | str) -> LossReport:
     MissingExtra
         NIfTI without nibabel.
     """
-    from pliant.io import metaimage, nifti
+    from pliant.io.image_formats import metaimage, nifti
 
     path = Path(path)
     name = path.name.lower()

@@ -16,25 +16,25 @@ from typing import Any, BinaryIO
 import numpy as np
 
 from pliant.errors import InvalidMesh, UnreadableFile, UnsupportedFormat
-from pliant.io.carrier import Carrier
 from pliant.io.files import read_bytes, write_bytes
-from pliant.io.format import MeshFormat, Source
 from pliant.io.gzipped import inflated, is_gzipped
+from pliant.io.mesh_formats.carrier import Carrier
+from pliant.io.mesh_formats.format import MeshFormat, Source
 from pliant.io.report import LossReport, refuse_losses
 from pliant.mesh import PolygonMesh
 
 _FORMATS = {  # module and class by ending; files are recognised in this order
-    "pliant.io.ply:Ply": (".ply",),
-    "pliant.io.gltf:Gltf": (".glb", ".gltf"),
-    "pliant.io.polydata:PolyData": (".vtp", ".vtk"),
-    "pliant.io.unstructured:Unstructured": (".vtu", ".vtk"),
-    "pliant.io.vtk_grid:VtkGrid": (".vti", ".vtr", ".vts"),
-    "pliant.io.gmsh:Gmsh": (".msh",),
-    "pliant.io.threemf:ThreeMf": (".3mf",),
-    "pliant.io.off:Off": (".off", ".coff", ".noff", ".stoff", ".cnoff", ".stcnoff"),
-    "pliant.io.stl:Stl": (".stl",),
-    "pliant.io.obj:Obj": (".obj",),
-    "pliant.io.point_table:PointTable": (".xyz", ".csv"),
+    "pliant.io.mesh_formats.ply:Ply": (".ply",),
+    "pliant.io.mesh_formats.gltf:Gltf": (".glb", ".gltf"),
+    "pliant.io.mesh_formats.polydata:PolyData": (".vtp", ".vtk"),
+    "pliant.io.mesh_formats.unstructured:Unstructured": (".vtu", ".vtk"),
+    "pliant.io.mesh_formats.vtk_grid:VtkGrid": (".vti", ".vtr", ".vts"),
+    "pliant.io.mesh_formats.gmsh:Gmsh": (".msh",),
+    "pliant.io.mesh_formats.threemf:ThreeMf": (".3mf",),
+    "pliant.io.mesh_formats.off:Off": (".off", ".coff", ".noff", ".stoff", ".cnoff", ".stcnoff"),
+    "pliant.io.mesh_formats.stl:Stl": (".stl",),
+    "pliant.io.mesh_formats.obj:Obj": (".obj",),
+    "pliant.io.mesh_formats.point_table:PointTable": (".xyz", ".csv"),
 }
 
 
@@ -153,7 +153,7 @@ def write(
 def formats() -> list[dict[str, Any]]:
     """What each format is called, its endings, whether it is written, and what it keeps.
 
-    The latter by the names of :class:`~pliant.io.format.Keeps`.
+    The latter by the names of :class:`~pliant.io.mesh_formats.format.Keeps`.
     """
     return [
         {"name": each.name, "suffixes": each.suffixes, "written": each.written, **asdict(each.keeps)} for each in _all()

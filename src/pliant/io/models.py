@@ -6,9 +6,9 @@ from pathlib import Path
 
 from pliant.errors import UnsupportedFormat
 from pliant.io.files import read_bytes, write_bytes
-from pliant.io.model_tree import HDF5_START, read_tree
+from pliant.io.model_formats.model_tree import HDF5_START, read_tree
+from pliant.io.model_formats.statismo import losses_of, model_of, tree_of
 from pliant.io.report import LossReport, refuse_losses
-from pliant.io.statismo import losses_of, model_of, tree_of
 from pliant.shape.model import ShapeModel
 
 NAME = "statismo 0.9"
@@ -66,11 +66,11 @@ def write_model(model: ShapeModel, path: Path | str, *, prefix: str = "", strict
     refuse_losses(losses, path, strict=strict)
     tree = tree_of(model, "/" + prefix.strip("/") if prefix.strip("/") else "")
     if path.suffix.lower() == ".json":
-        from pliant.io.model_json import to_json
+        from pliant.io.model_formats.model_json import to_json
 
         write_bytes(path, to_json(tree))
     else:
-        from pliant.io.model_hdf5 import to_hdf5
+        from pliant.io.model_formats.model_hdf5 import to_hdf5
 
         write_bytes(path, to_hdf5(tree))
     return LossReport(path, NAME, losses, ("numbers are rounded to float32",))

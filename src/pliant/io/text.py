@@ -14,8 +14,8 @@ import numpy as np
 import orjson
 from numpy.typing import NDArray
 
-from pliant.io.format import Source
-from pliant.numerics.chunks import for_chunks
+from pliant.io.mesh_formats.format import Source
+from pliant.numerics.compute.chunks import for_chunks
 from pliant.numerics.ragged import Ragged
 
 Floats = NDArray[np.float64]

@@ -9,12 +9,12 @@ from numpy.typing import ArrayLike
 from pliant.deformer import Deformer, SpaceDeformer
 from pliant.errors import UnsupportedFormat
 from pliant.io.files import read_bytes
+from pliant.io.map_formats.transform_formats import FORMATS as FORMATS
+from pliant.io.map_formats.transform_formats import formats as formats
+from pliant.io.map_formats.transform_formats import known_endings
+from pliant.io.map_formats.transform_formats import transform_format as transform_format
+from pliant.io.map_formats.transform_options import Edge, Placement, ReadOptions, Variant
 from pliant.io.report import LossReport
-from pliant.io.transform_formats import FORMATS as FORMATS
-from pliant.io.transform_formats import formats as formats
-from pliant.io.transform_formats import known_endings
-from pliant.io.transform_formats import transform_format as transform_format
-from pliant.io.transform_options import Edge, Placement, ReadOptions, Variant
 from pliant.mesh import PolygonMesh
 
 

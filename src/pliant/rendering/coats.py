@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pliant.errors import InvalidParameter, UnreadableFile
-from pliant.io.colors import as_bytes, is_color
+from pliant.io.mesh_formats.colors import as_bytes, is_color
 from pliant.mesh import Material, PolygonMesh
 from pliant.rendering.palette import CHECKER, CLAY
 from pliant.rendering.quantities import Quantity, painted

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pliant.mesh import PolygonMesh
-from pliant.numerics.triangulation import polygon_normals
+from pliant.numerics.meshes.triangulation import polygon_normals
 
 FEATURE = np.cos(np.radians(40))  # polygons that meet at more than 40 degrees keep their edge
 

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pliant.mesh import Points, PolygonMesh
-from pliant.numerics.rotations import nearest_rotations
+from pliant.numerics.rigid.rotations import nearest_rotations
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]

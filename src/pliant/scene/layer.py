@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from pliant.deformer import Deformer, SpaceDeformer
 from pliant.errors import InvalidControls, InvalidParameter, InvalidTarget
 from pliant.mesh import Points
-from pliant.numerics.chunks import for_chunks
+from pliant.numerics.compute.chunks import for_chunks
 from pliant.numerics.ragged import frozen
 from pliant.scene.keys import key_of, structure_key
 

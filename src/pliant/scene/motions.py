@@ -9,7 +9,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from pliant.numerics.rotations import nearest_rotations, rotations_of
+from pliant.numerics.rigid.rotations import nearest_rotations, rotations_of
 
 Floats = NDArray[np.float64]
 

@@ -19,7 +19,7 @@ from pliant.deformer import Deformer
 
 ROOMS = ("pliant.space", "pliant.surface", "pliant.shape")
 ABOVE = ("pliant.face.caricature_deformer", "pliant.face.handles")  # deformers in rooms above this one
-RECORDS = ("pliant.attributes", "pliant.mesh", "pliant.numerics.patch_block", "pliant.numerics.ragged")
+RECORDS = ("pliant.attributes", "pliant.mesh", "pliant.numerics.lattices.patch_block", "pliant.numerics.ragged")
 
 
 def deformer_classes() -> dict[str, type[Deformer]]:

@@ -21,7 +21,7 @@ from pliant.deformer import (
 )
 from pliant.errors import InvalidParameter, NotDifferentiable
 from pliant.mesh import CornerValues, Points, PolygonMesh, as_points
-from pliant.numerics.normals import carry_normals
+from pliant.numerics.maps.normals import carry_normals
 from pliant.scene.layer import Layer
 from pliant.scene.stack_binding import StackBinding
 from pliant.surface.shading import shading_normals

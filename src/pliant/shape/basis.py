@@ -13,8 +13,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import DTypeLike, NDArray
 
-from pliant.numerics.chunks import for_chunks
-from pliant.numerics.one_thread import one_blas_thread
+from pliant.numerics.compute.chunks import for_chunks
+from pliant.numerics.compute.one_thread import one_blas_thread
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.integer]

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pliant.numerics.one_thread import one_blas_thread
+from pliant.numerics.compute.one_thread import one_blas_thread
 from pliant.shape.basis import Basis, Floats
 from pliant.shape.posterior import Noise
 

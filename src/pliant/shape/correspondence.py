@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from pliant.errors import InvalidTarget
 from pliant.mesh import PolygonMesh
-from pliant.numerics.closest_surface import Closest, TriangleSearch
+from pliant.numerics.meshes.closest_surface import Closest, TriangleSearch
 from pliant.numerics.ragged import Ragged
 
 Floats = NDArray[np.float64]
@@ -134,7 +134,7 @@ def triangle_normals(points: Floats, triangles: NDArray[np.int32]) -> Floats:
 
 def vertex_normals(points: Floats, triangles: NDArray[np.int32]) -> Floats:
     """(n, 3) unit normals, weighted by area; zero where no triangle defines one."""
-    from pliant.numerics.closest_kernels import add_normals
+    from pliant.numerics.meshes.closest_kernels import add_normals
 
     sums = np.zeros_like(points)
     add_normals(np.ascontiguousarray(points), np.ascontiguousarray(triangles), sums)

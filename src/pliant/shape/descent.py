@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 from pliant.deformer import checked_controls
 from pliant.errors import InvalidParameter
 from pliant.mesh import PolygonMesh
-from pliant.numerics.one_thread import one_blas_thread
+from pliant.numerics.compute.one_thread import one_blas_thread
 from pliant.shape import robust
 from pliant.shape.basis import Floats
 from pliant.shape.correspondence import Target

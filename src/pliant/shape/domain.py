@@ -63,7 +63,7 @@ def carriers(
         corners, weights = surrounding(mesh.points, cells, points)
         return corners.astype(np.int64), weights
     if interpolation == "surface" and len(mesh.triangles):
-        from pliant.numerics.closest_surface import TriangleSearch
+        from pliant.numerics.meshes.closest_surface import TriangleSearch
 
         found = TriangleSearch(mesh.points, mesh.triangles).query(points)
         return mesh.triangles[found.triangles].astype(np.int64), found.weights

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pliant.numerics.chunks import for_chunks
+from pliant.numerics.compute.chunks import for_chunks
 from pliant.shape.kernels import Floats, Kernel
 
 _BLOCK = 131_072  # covariances a block

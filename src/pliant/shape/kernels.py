@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pliant.errors import InvalidParameter
 from pliant.mesh import as_points
-from pliant.numerics.chunks import for_chunks
+from pliant.numerics.compute.chunks import for_chunks
 
 Floats = NDArray[np.float64]
 

@@ -10,8 +10,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pliant.errors import InvalidParameter
-from pliant.numerics.chunks import for_chunks
-from pliant.numerics.one_thread import one_blas_thread
+from pliant.numerics.compute.chunks import for_chunks
+from pliant.numerics.compute.one_thread import one_blas_thread
 from pliant.shape.basis import Basis, FullBasis, ScalarBasis
 from pliant.shape.kernels import Floats, Kernel
 from pliant.shape.low_rank import NEGLIGIBLE, LowRank, checked_rank, warn_of_little

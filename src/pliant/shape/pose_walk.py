@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from pliant.errors import InvalidParameter
-from pliant.numerics.rotations import rotations_of
+from pliant.numerics.rigid.rotations import rotations_of
 from pliant.shape.kernels import Floats, positive
 from pliant.shape.sampling import Proposal, normal_density
 

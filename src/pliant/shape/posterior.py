@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from pliant.errors import InvalidParameter, PliantWarning
-from pliant.numerics.one_thread import one_blas_thread
+from pliant.numerics.compute.one_thread import one_blas_thread
 from pliant.shape.basis import Basis
 from pliant.shape.kernels import Floats
 

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from pliant.errors import InvalidParameter, InvalidTarget, NotConverged
 from pliant.mesh import Points, PolygonMesh
-from pliant.numerics.one_thread import one_blas_thread
+from pliant.numerics.compute.one_thread import one_blas_thread
 from pliant.shape import robust
 from pliant.shape.basis import Floats
 from pliant.shape.correspondence import Target, vertex_normals

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pliant.errors import InvalidParameter, NonFiniteResult
-from pliant.numerics.one_thread import one_blas_thread
+from pliant.numerics.compute.one_thread import one_blas_thread
 from pliant.shape.kernels import positive
 
 Floats = NDArray[np.float64]

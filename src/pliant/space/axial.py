@@ -1,7 +1,7 @@
 """What Barr's global deformations share: an axis, an origin, bounds along the axis, and a few numbers to turn.
 
 Barr, "Global and local deformations of solid primitives" (1984). Each of them carries the sections of space by affine
-maps (:mod:`pliant.numerics.sections`), so that a deformer only says which.
+maps (:mod:`pliant.numerics.maps.sections`), so that a deformer only says which.
 """
 
 from __future__ import annotations
@@ -25,8 +25,8 @@ from pliant.deformer import (
 )
 from pliant.errors import InvalidControls, InvalidDeformer
 from pliant.mesh import Points, PolygonMesh, as_points
+from pliant.numerics.maps.sections import Entries, displaced, jacobians, section_of
 from pliant.numerics.ragged import frozen
-from pliant.numerics.sections import Entries, displaced, jacobians, section_of
 from pliant.space.affine import Axis
 from pliant.space.axes import extent_along, one_number, three_numbers, unit_axis
 from pliant.space.axial_binding import AxialBinding
@@ -130,7 +130,7 @@ class AxialDeformer(SpaceDeformer):
 
     @abstractmethod
     def _table(self, q: Floats, numbers: Numbers) -> Entries:
-        """The displacement of the sections q, see :mod:`pliant.numerics.sections`, for (p,) numbers.
+        """The displacement of the sections q, see :mod:`pliant.numerics.maps.sections`, for (p,) numbers.
 
         The numbers may be complex: derivatives by them are taken along the imaginary axis.
         """

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pliant.errors import NotConverged, PliantWarning
 from pliant.mesh import Points, as_points
-from pliant.numerics.sections import Entries, section_of
+from pliant.numerics.maps.sections import Entries, section_of
 from pliant.space.affine import Axis
 from pliant.space.axes import one_number, unit_axis
 from pliant.space.axial import AxialDeformer, Numbers

@@ -15,11 +15,11 @@ from numpy.typing import ArrayLike, NDArray
 from pliant.deformer import Controls, SpaceDeformer, Target, checked_controls
 from pliant.errors import InvalidDeformer, OutsideDomain
 from pliant.mesh import Points, PolygonMesh, as_points
-from pliant.numerics.bases import BernsteinPoints
-from pliant.numerics.cells import BERNSTEIN, CellGrid, CellPoints
-from pliant.numerics.lattice_inverse import LatticeNewton
-from pliant.numerics.newton import Solution, solve
-from pliant.numerics.polynomial_cells import PolynomialCells
+from pliant.numerics.lattices.bases import BernsteinPoints
+from pliant.numerics.lattices.cells import BERNSTEIN, CellGrid, CellPoints
+from pliant.numerics.lattices.lattice_inverse import LatticeNewton
+from pliant.numerics.lattices.polynomial_cells import PolynomialCells
+from pliant.numerics.maps.newton import Solution, solve
 from pliant.numerics.ragged import frozen
 from pliant.space.box import box_around, checked_axes, thickened
 from pliant.space.control_maps import Padding

@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 from pliant.deformer import Binding, Controls, SpaceDeformer, Target, checked_controls, checked_out
 from pliant.errors import InvalidDeformer, OutsideDomain
 from pliant.mesh import Points, PolygonMesh, as_points
-from pliant.numerics.chunks import for_chunks
-from pliant.numerics.patch_surface import PatchSurface, bernstein_sum, bernstein_transpose
+from pliant.numerics.compute.chunks import for_chunks
+from pliant.numerics.lattices.patch_surface import PatchSurface, bernstein_sum, bernstein_transpose
 from pliant.numerics.ragged import frozen
 from pliant.space.bezier_ffd import TOLERANCE, Outside
 from pliant.space.box import box_around, thickened

@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from pliant.deformer import Controls, SpaceDeformer, Target, checked_controls
 from pliant.errors import InvalidDeformer, OutsideDomain
 from pliant.mesh import Points, PolygonMesh, as_points
-from pliant.numerics.stretches import StretchedNormals
+from pliant.numerics.coordinates.stretches import StretchedNormals
 from pliant.space.cage_binding import CageBinding
 from pliant.space.cage_structure import checked_cage
 from pliant.space.coordinates.base import Coordinates

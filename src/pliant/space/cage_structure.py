@@ -6,9 +6,9 @@ import weakref
 
 from pliant.errors import InvalidDeformer
 from pliant.mesh import PolygonMesh
-from pliant.numerics.manifold import flat_triangles, manifold_faults
-from pliant.numerics.triangle_crossings import self_crossings
-from pliant.numerics.winding import signed_volume
+from pliant.numerics.coordinates.winding import signed_volume
+from pliant.numerics.meshes.manifold import flat_triangles, manifold_faults
+from pliant.numerics.meshes.triangle_crossings import self_crossings
 
 _sound: weakref.WeakSet[PolygonMesh] = weakref.WeakSet()
 

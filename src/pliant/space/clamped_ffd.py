@@ -16,8 +16,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from pliant.deformer import Controls, SpaceDeformer, Target, checked_controls
 from pliant.mesh import Points, PolygonMesh, as_points
-from pliant.numerics.cells import BERNSTEIN, CellGrid, CellPoints
-from pliant.numerics.clamped import parameters, pieces, spans
+from pliant.numerics.lattices.cells import BERNSTEIN, CellGrid, CellPoints
+from pliant.numerics.lattices.clamped import parameters, pieces, spans
 from pliant.numerics.ragged import frozen
 from pliant.space.bezier_ffd import TOLERANCE, BezierFFD
 from pliant.space.control_maps import Extraction, Shares

@@ -13,7 +13,7 @@ from scipy.sparse import csr_array, eye_array, vstack
 from pliant.deformer import Controls, SpaceDeformer, Target, checked_controls
 from pliant.errors import InvalidDeformer
 from pliant.mesh import as_points
-from pliant.numerics.ghost_box import GhostBox
+from pliant.numerics.neighbors.ghost_box import GhostBox
 from pliant.numerics.ragged import frozen
 from pliant.space.sparse import SparseBinding
 

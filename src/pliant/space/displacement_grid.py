@@ -12,9 +12,9 @@ from numpy.typing import ArrayLike, NDArray
 from pliant.deformer import Controls, SpaceDeformer, Target, checked_controls
 from pliant.errors import InvalidDeformer
 from pliant.mesh import Points, as_points
-from pliant.numerics.cells import BSPLINE, CellGrid, CellPoints
-from pliant.numerics.grid_points import GridPoints
-from pliant.numerics.polynomial_cells import PolynomialCells
+from pliant.numerics.lattices.cells import BSPLINE, CellGrid, CellPoints
+from pliant.numerics.lattices.grid_points import GridPoints
+from pliant.numerics.lattices.polynomial_cells import PolynomialCells
 from pliant.numerics.ragged import frozen
 from pliant.space.box import checked_axes
 from pliant.space.control_maps import ControlMap, Extraction, Padding

@@ -16,7 +16,7 @@ from scipy.sparse import csr_array
 from pliant.deformer import Controls, SpaceDeformer, Target, checked_controls
 from pliant.errors import InvalidDeformer, OutsideDomain
 from pliant.mesh import Points, PolygonMesh, as_points
-from pliant.numerics.patch_block import PatchBlock
+from pliant.numerics.lattices.patch_block import PatchBlock
 from pliant.numerics.ragged import frozen
 from pliant.space import round_lattices
 from pliant.space.round_lattices import RoundFrame
@@ -51,7 +51,7 @@ class ExtendedFFD(SpaceDeformer):
     points
         (m, 3) control points at rest, each once.
     blocks
-        How the control points make blocks; see :class:`pliant.numerics.patch_block.PatchBlock`.
+        How the control points make blocks; see :class:`pliant.numerics.lattices.patch_block.PatchBlock`.
     displacements
         (m, 3) displacement of each control point; None = at rest.
     outside

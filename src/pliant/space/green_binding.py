@@ -10,7 +10,7 @@ from scipy.sparse import csr_array
 
 from pliant.deformer import Controls, checked_controls, checked_out, require_finite
 from pliant.mesh import Points
-from pliant.numerics.stretches import StretchedNormals
+from pliant.numerics.coordinates.stretches import StretchedNormals
 from pliant.space.cage_binding import CageDrag
 from pliant.space.coordinates.table import WeightTable
 from pliant.space.point_binding import PointBinding

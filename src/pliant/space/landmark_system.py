@@ -10,8 +10,8 @@ from numpy.typing import NDArray
 
 from pliant.errors import InvalidDeformer
 from pliant.mesh import Points
-from pliant.numerics.one_thread import one_blas_thread
-from pliant.numerics.radial import RadialBasis
+from pliant.numerics.compute.one_thread import one_blas_thread
+from pliant.numerics.maps.radial import RadialBasis
 
 Floats = NDArray[np.float64]
 

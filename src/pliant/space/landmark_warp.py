@@ -26,7 +26,7 @@ from pliant.deformer import (
 )
 from pliant.errors import InvalidDeformer
 from pliant.mesh import Points, as_points
-from pliant.numerics.radial import RadialBasis
+from pliant.numerics.maps.radial import RadialBasis
 from pliant.numerics.ragged import frozen
 from pliant.space.landmark_system import LandmarkSystem
 from pliant.space.lattice import by_threes

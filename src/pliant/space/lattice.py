@@ -19,7 +19,7 @@ Floats = NDArray[np.float64]
 
 
 class SampledBasis(Protocol):
-    """A tensor-product basis at the target's points: see :class:`pliant.numerics.cells.CellPoints`."""
+    """A tensor-product basis at the target's points: see :class:`pliant.numerics.lattices.cells.CellPoints`."""
 
     points: Points
 
@@ -135,7 +135,7 @@ class LatticeDrag(Drag):
 
     def _move_several(self, new: Controls, moved: NDArray[np.int64]) -> NDArray[np.int32]:
         """Add the displacement field of the difference, in the cells that it reaches."""
-        from pliant.numerics.cells import CellPoints
+        from pliant.numerics.lattices.cells import CellPoints
 
         self._grabbed = None
         binding, sampled = self._binding, self._binding._sampled
@@ -159,7 +159,7 @@ class _Column:
         self._anchors = buffer[self._points]
 
     def move(self, position: Floats, buffer: Points) -> NDArray[np.int32]:
-        from pliant.numerics.cells import shift_points
+        from pliant.numerics.lattices.cells import shift_points
 
         shift_points(self._points, self._weights, self._anchors, position - self._start, buffer)
         return self._points

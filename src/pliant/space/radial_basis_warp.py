@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pliant.errors import InvalidDeformer
-from pliant.numerics.radial import RadialBasis
+from pliant.numerics.maps.radial import RadialBasis
 from pliant.space.landmark_warp import LandmarkWarp
 
 Floats = NDArray[np.float64]

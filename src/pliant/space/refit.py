@@ -15,9 +15,9 @@ from numpy.typing import NDArray
 
 from pliant.deformer import SpaceDeformer
 from pliant.errors import InvalidParameter
-from pliant.numerics.bases import bernstein
-from pliant.numerics.cells import BERNSTEIN, BSPLINE
-from pliant.numerics.clamped import parameters, pieces, spans
+from pliant.numerics.lattices.bases import bernstein
+from pliant.numerics.lattices.cells import BERNSTEIN, BSPLINE
+from pliant.numerics.lattices.clamped import parameters, pieces, spans
 from pliant.space.affine import Affine
 from pliant.space.bezier_ffd import BezierFFD
 from pliant.space.bspline_ffd import BSplineFFD, Direction, Edge

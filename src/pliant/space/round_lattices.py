@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pliant.errors import InvalidDeformer
 from pliant.mesh import PolygonMesh, as_points
-from pliant.numerics.patch_block import Basis, PatchBlock
+from pliant.numerics.lattices.patch_block import Basis, PatchBlock
 from pliant.space.box import box_around, thickened
 
 Floats = NDArray[np.float64]

@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from pliant.deformer import SpaceDeformer
 from pliant.errors import InvalidParameter
 from pliant.mesh import PolygonMesh
-from pliant.numerics.separable import grid_sum
+from pliant.numerics.lattices.separable import grid_sum
 from pliant.space.box import box_around, checked_axes, thickened
 from pliant.space.bspline_ffd import BSplineFFD
 from pliant.space.displacement_grid import DisplacementGrid, Interpolation, Outside

@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pliant.errors import NotConverged
 from pliant.mesh import Points, as_points
-from pliant.numerics.sections import Entries, similar, similar_jacobians
+from pliant.numerics.maps.sections import Entries, similar, similar_jacobians
 from pliant.space.axial import AxialDeformer, Numbers
 from pliant.space.profile import Curve
 

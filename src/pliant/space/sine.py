@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pliant.mesh import Points
-from pliant.numerics.sections import Entries
+from pliant.numerics.maps.sections import Entries
 from pliant.space.affine import Axis
 from pliant.space.axes import unit_axis
 from pliant.space.axial import Numbers

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from pliant.numerics.patch_block import PatchBlock
+from pliant.numerics.lattices.patch_block import PatchBlock
 
 Floats = NDArray[np.float64]
 

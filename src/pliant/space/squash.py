@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pliant.errors import InvalidDeformer
-from pliant.numerics.sections import Entries
+from pliant.numerics.maps.sections import Entries
 from pliant.space.axes import unit_axis
 from pliant.space.axial import Numbers
 from pliant.space.profile import Curve, ProfileLike

@@ -15,8 +15,8 @@ from numpy.typing import ArrayLike, NDArray
 
 from pliant.deformer import Controls, checked_controls
 from pliant.errors import InvalidDeformer
+from pliant.numerics.maps.sections import Entries
 from pliant.numerics.ragged import frozen
-from pliant.numerics.sections import Entries
 from pliant.space.axial import AxialDeformer, Numbers
 
 Floats = NDArray[np.float64]

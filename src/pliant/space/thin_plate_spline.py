@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import NDArray
 
-from pliant.numerics.radial import RadialBasis
+from pliant.numerics.maps.radial import RadialBasis
 from pliant.space.landmark_warp import LandmarkWarp
 
 Floats = NDArray[np.float64]

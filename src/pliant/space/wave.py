@@ -12,7 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pliant.errors import InvalidDeformer
 from pliant.mesh import Points, PolygonMesh, as_points
-from pliant.numerics.sections import Entries
+from pliant.numerics.maps.sections import Entries
 from pliant.space.axial import Numbers
 from pliant.space.profile import ProfileLike
 from pliant.space.profiled import ProfiledDeformer

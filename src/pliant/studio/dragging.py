@@ -16,8 +16,8 @@ from pliant.errors import InvalidParameter
 from pliant.mesh import Points
 from pliant.scene.scene import Scene
 from pliant.scene.stack import Stack
-from pliant.studio.frames import Frame
 from pliant.studio.request import Client, Request
+from pliant.studio.serving.frames import Frame
 
 if TYPE_CHECKING:
     from pliant.studio.session import Session

@@ -17,9 +17,9 @@ from pliant.errors import PliantError
 from pliant.field.certificate import Certificate
 from pliant.field.certifying import certify
 from pliant.scene.scene import Scene
-from pliant.studio.frames import Frame
 from pliant.studio.request import Client
-from pliant.studio.spaces import space_map
+from pliant.studio.seen.spaces import space_map
+from pliant.studio.serving.frames import Frame
 
 if TYPE_CHECKING:
     from pliant.studio.session import Session

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pliant.errors import InvalidParameter
-from pliant.studio.frames import Arrays, Frame
+from pliant.studio.serving.frames import Arrays, Frame
 
 if TYPE_CHECKING:
     from pliant.studio.session import Session

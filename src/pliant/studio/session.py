@@ -20,17 +20,17 @@ from pliant.errors import InvalidParameter, PliantError, PliantWarning
 from pliant.scene.pictures import pictures_folder
 from pliant.scene.scene import Scene
 from pliant.studio.autosave import Autosave
-from pliant.studio.catalogue import catalogue
 from pliant.studio.dragging import Dragging
-from pliant.studio.files import Uploads
-from pliant.studio.frames import Frame, MalformedFrame
+from pliant.studio.examples.samples import samples_folder
 from pliant.studio.history import Entry, History
 from pliant.studio.jobs import Jobs
-from pliant.studio.posing import keyed, within
+from pliant.studio.modes.posing import keyed, within
 from pliant.studio.request import COMMANDS, Client, Request
-from pliant.studio.samples import samples_folder
-from pliant.studio.stage import Stage
-from pliant.studio.state import scene_state
+from pliant.studio.seen.catalogue import catalogue
+from pliant.studio.seen.stage import Stage
+from pliant.studio.seen.state import scene_state
+from pliant.studio.serving.files import Uploads
+from pliant.studio.serving.frames import Frame, MalformedFrame
 
 
 class Session:

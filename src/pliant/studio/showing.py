@@ -10,7 +10,7 @@ from pliant.mesh import PolygonMesh
 from pliant.scene.layer import Layer
 from pliant.scene.scene import Scene
 from pliant.scene.stack import Stack
-from pliant.studio.launching import Launch, launch
+from pliant.studio.serving.launching import Launch, launch
 
 
 class Studio:

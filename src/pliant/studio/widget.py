@@ -10,8 +10,8 @@ from pliant.errors import MissingExtra
 from pliant.mesh import PolygonMesh
 from pliant.scene.scene import Scene
 from pliant.scene.stack import Stack
-from pliant.studio.frames import MalformedFrame
-from pliant.studio.server import client_folder
+from pliant.studio.serving.frames import MalformedFrame
+from pliant.studio.serving.server import client_folder
 from pliant.studio.session import Session
 from pliant.studio.showing import as_stack
 

@@ -12,8 +12,8 @@ from pliant.deformer import Controls, Target
 from pliant.errors import InvalidDeformer, NonFiniteResult, NotDifferentiable
 from pliant.iterative import IterativeBinding, Solution
 from pliant.mesh import Points
-from pliant.numerics.laplacians import WEIGHTS
-from pliant.numerics.rotations import nearest_rotations
+from pliant.numerics.meshes.laplacians import WEIGHTS
+from pliant.numerics.rigid.rotations import nearest_rotations
 from pliant.surface.cells import Cells
 from pliant.surface.constraints import Constraints, constrain
 from pliant.surface.editing import SurfaceBinding, SurfaceDeformer

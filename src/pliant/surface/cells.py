@@ -7,10 +7,10 @@ from numpy.typing import NDArray
 from scipy.sparse import csc_array, csr_array, diags_array
 
 from pliant.mesh import Points
-from pliant.numerics.chunks import for_chunks
-from pliant.numerics.graphs import grown
-from pliant.numerics.laplacians import row_sums
-from pliant.numerics.sparse_cholesky import Cholesky
+from pliant.numerics.compute.chunks import for_chunks
+from pliant.numerics.meshes.graphs import grown
+from pliant.numerics.meshes.laplacians import row_sums
+from pliant.numerics.sparse.sparse_cholesky import Cholesky
 
 Floats = NDArray[np.float64]
 
@@ -58,7 +58,7 @@ class Cells:
 
     def turn(self, points: Points, rotations: Floats) -> float:
         """The local step: the best ``rotations`` (c, 3, 3) for given points, in place; the energy that is left."""
-        from pliant.numerics import rigidity
+        from pliant.numerics.rigid import rigidity
 
         flat, spins, parts = points.reshape(-1), rotations.reshape(-1), []
 
@@ -77,7 +77,7 @@ class Cells:
 
     def settle(self, points: Points, rotations: Floats) -> None:
         """The global step: the best places of the free vertices for given rotations, in place."""
-        from pliant.numerics import rigidity
+        from pliant.numerics.rigid import rigidity
 
         flat, spins, lack = points.reshape(-1), rotations.reshape(-1), np.empty((len(self.free), 3))
         target = lack.reshape(-1)

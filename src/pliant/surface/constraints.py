@@ -10,7 +10,7 @@ from scipy.sparse import csr_array
 
 from pliant.errors import InvalidDeformer, InvalidMesh, InvalidTarget
 from pliant.mesh import PolygonMesh
-from pliant.numerics.graphs import components, grown
+from pliant.numerics.meshes.graphs import components, grown
 from pliant.numerics.ragged import frozen
 
 Integers = NDArray[np.int64]

@@ -10,9 +10,9 @@ from scipy.sparse import csr_array
 
 from pliant.errors import InvalidParameter
 from pliant.mesh import Points, PolygonMesh
-from pliant.numerics.eigenpairs import lowest_eigenpairs
-from pliant.numerics.graphs import components, edge_graph, nearest_source
-from pliant.numerics.laplacians import cotangent_weights, laplacian, masses
+from pliant.numerics.meshes.eigenpairs import lowest_eigenpairs
+from pliant.numerics.meshes.graphs import components, edge_graph, nearest_source
+from pliant.numerics.meshes.laplacians import cotangent_weights, laplacian, masses
 from pliant.numerics.ragged import Ragged
 from pliant.surface.constraints import mesh_of
 from pliant.surface.isolines import isolines

@@ -15,10 +15,10 @@ from scipy.sparse import csc_array, csr_array, diags_array, eye_array, kron
 
 from pliant.errors import InvalidParameter
 from pliant.mesh import Points, PolygonMesh
-from pliant.numerics.closest_triangles import FacingTriangles, unit_normals
-from pliant.numerics.gradients import full_gradients, sound
-from pliant.numerics.rotations import nearest_rotations
-from pliant.numerics.sparse_cholesky import Cholesky
+from pliant.numerics.meshes.closest_triangles import FacingTriangles, unit_normals
+from pliant.numerics.meshes.gradients import full_gradients, sound
+from pliant.numerics.rigid.rotations import nearest_rotations
+from pliant.numerics.sparse.sparse_cholesky import Cholesky
 from pliant.surface.constraints import mesh_of
 
 Floats = NDArray[np.float64]

@@ -13,9 +13,9 @@ from scipy.sparse.linalg import LinearOperator
 from pliant.deformer import Controls, LinearBinding, Target, checked_controls
 from pliant.errors import InvalidDeformer
 from pliant.mesh import Points, PolygonMesh
-from pliant.numerics.graphs import grown
-from pliant.numerics.laplacians import WEIGHTS, laplacian, masses, normalized
-from pliant.numerics.sparse_cholesky import Cholesky
+from pliant.numerics.meshes.graphs import grown
+from pliant.numerics.meshes.laplacians import WEIGHTS, laplacian, masses, normalized
+from pliant.numerics.sparse.sparse_cholesky import Cholesky
 from pliant.surface.constraints import Constraints, constrain
 from pliant.surface.editing import SurfaceBinding, SurfaceDeformer
 from pliant.surface.similarity import similarity_equations

@@ -8,8 +8,8 @@ from scipy.sparse import csr_array
 
 from pliant.errors import InvalidParameter
 from pliant.mesh import PolygonMesh
-from pliant.numerics.geodesics import geodesic_distance
-from pliant.numerics.graphs import grown
+from pliant.numerics.meshes.geodesics import geodesic_distance
+from pliant.numerics.meshes.graphs import grown
 from pliant.surface.constraints import indices_in, mesh_of, vertex_set
 
 Integers = NDArray[np.int64]

@@ -138,7 +138,7 @@ class SeenMesh:
     @cached_property
     def _in_front(self) -> NDArray[np.bool_]:
         """Which vertices a depth picture of the faces does not hide."""
-        from pliant.numerics.screen_kernels import cover, hidden
+        from pliant.numerics.meshes.screen_kernels import cover, hidden
 
         triangles = self._triangles[self._ahead[self._triangles].all(axis=1)]
         if not len(triangles):

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pliant.mesh import CornerValues, Points, PolygonMesh
-from pliant.numerics.triangulation import polygon_normals
+from pliant.numerics.meshes.triangulation import polygon_normals
 
 
 def shading_normals(mesh: PolygonMesh, points: Points) -> Points | CornerValues | None:

@@ -12,8 +12,8 @@ from pliant.deformer import Controls, checked_controls
 from pliant.errors import NotDifferentiable
 from pliant.iterative import IterativeBinding, Solution
 from pliant.mesh import Points, PolygonMesh
-from pliant.numerics.laplacians import laplacian, masses
-from pliant.numerics.sparse_cholesky import Cholesky
+from pliant.numerics.meshes.laplacians import laplacian, masses
+from pliant.numerics.sparse.sparse_cholesky import Cholesky
 from pliant.surface.cells import Cells
 from pliant.surface.constraints import Constraints
 from pliant.surface.contour_skeletons import ContourSkeleton

@@ -12,8 +12,8 @@ from numpy.typing import ArrayLike, NDArray
 from pliant.deformer import Target
 from pliant.errors import InvalidDeformer
 from pliant.mesh import PolygonMesh
-from pliant.numerics.geodesics import geodesic_distance
-from pliant.numerics.laplacians import cotangent_weights
+from pliant.numerics.meshes.geodesics import geodesic_distance
+from pliant.numerics.meshes.laplacians import cotangent_weights
 from pliant.surface.cells import Cells
 from pliant.surface.constraints import Constraints, constrain
 from pliant.surface.contour_skeletons import ContourSkeleton, contour_skeleton

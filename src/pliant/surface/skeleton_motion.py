@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pliant.mesh import Points
-from pliant.numerics.rotations import rotations_of, turning_vectors
+from pliant.numerics.rigid.rotations import rotations_of, turning_vectors
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]

@@ -11,9 +11,9 @@ from scipy.sparse import csc_array, csr_array, diags_array
 from pliant.deformer import require_finite
 from pliant.errors import InvalidParameter
 from pliant.mesh import Points, PolygonMesh
-from pliant.numerics.laplacians import WEIGHTS, laplacian, masses, normalized
+from pliant.numerics.meshes.laplacians import WEIGHTS, laplacian, masses, normalized
 from pliant.numerics.ragged import Ragged
-from pliant.numerics.sparse_cholesky import Cholesky
+from pliant.numerics.sparse.sparse_cholesky import Cholesky
 from pliant.surface.constraints import indices_in, mesh_of, vertex_set
 from pliant.surface.editing import spread_to
 from pliant.surface.shading import shading_normals

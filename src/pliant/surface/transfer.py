@@ -10,11 +10,11 @@ from scipy.sparse import csc_array, csr_array, diags_array, eye_array, kron
 
 from pliant.errors import InvalidParameter, InvalidTarget
 from pliant.mesh import Points, PolygonMesh, as_points
-from pliant.numerics.adjacency import unique_edges
-from pliant.numerics.gradients import DeformationGradients, plane_gradients, sound
-from pliant.numerics.graphs import components, edge_graph
+from pliant.numerics.meshes.adjacency import unique_edges
+from pliant.numerics.meshes.gradients import DeformationGradients, plane_gradients, sound
+from pliant.numerics.meshes.graphs import components, edge_graph
 from pliant.numerics.ragged import Ragged, frozen
-from pliant.numerics.sparse_cholesky import Cholesky
+from pliant.numerics.sparse.sparse_cholesky import Cholesky
 from pliant.surface.constraints import mesh_of
 from pliant.surface.correspondence import Progress, checked_markers, find_correspondence
 from pliant.surface.shading import shading_normals

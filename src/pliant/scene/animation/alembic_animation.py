@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 from pliant._version import __version__
 from pliant.errors import MissingExtra
 from pliant.io.files import replacing
-from pliant.io.losses import as_float32
-from pliant.io.polydata_process import read_path
+from pliant.io.mesh_formats.losses import as_float32
+from pliant.io.mesh_formats.polydata_process import read_path
 from pliant.io.report import LossReport
 from pliant.mesh import PolygonMesh
 from pliant.scene.clip import Clip, Progress

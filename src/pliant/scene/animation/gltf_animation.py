@@ -12,14 +12,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pliant.errors import UnreadableFile
-from pliant.io import gltf_builder
-from pliant.io.carrier import carrier_of
 from pliant.io.files import read_bytes, write_bytes
-from pliant.io.format import Encoded, Source
-from pliant.io.gltf import Gltf
-from pliant.io.gltf_file import GltfFile, item, opened
-from pliant.io.gltf_scene import placed_nodes
-from pliant.io.gltf_writer import Layout, same_file
+from pliant.io.mesh_formats import gltf_builder
+from pliant.io.mesh_formats.carrier import carrier_of
+from pliant.io.mesh_formats.format import Encoded, Source
+from pliant.io.mesh_formats.gltf import Gltf
+from pliant.io.mesh_formats.gltf_file import GltfFile, item, opened
+from pliant.io.mesh_formats.gltf_scene import placed_nodes
+from pliant.io.mesh_formats.gltf_writer import Layout, same_file
 from pliant.io.report import LossReport
 from pliant.mesh import PolygonMesh
 from pliant.scene.animation.gltf_morphs import MorphWriter, Share

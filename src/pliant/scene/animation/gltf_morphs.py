@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pliant.io.gltf_builder import normals_of
-from pliant.io.gltf_file import GltfFile, packed
-from pliant.io.gltf_scene import unit
-from pliant.io.losses import as_float32
+from pliant.io.mesh_formats.gltf_builder import normals_of
+from pliant.io.mesh_formats.gltf_file import GltfFile, packed
+from pliant.io.mesh_formats.gltf_scene import unit
+from pliant.io.mesh_formats.losses import as_float32
 from pliant.mesh import PolygonMesh
 
 Floats = NDArray[np.float64]

@@ -7,8 +7,8 @@ from typing import Any
 import numpy as np
 
 from pliant.errors import UnreadableFile
-from pliant.io.gltf_file import GltfFile, item
-from pliant.io.gltf_scene import Matrix, all_nodes
+from pliant.io.mesh_formats.gltf_file import GltfFile, item
+from pliant.io.mesh_formats.gltf_scene import Matrix, all_nodes
 from pliant.scene.animation.gltf_tracks import Floats, Track, Which, tracks_of
 
 _MOST = 200_000_000  # coordinates of all frames

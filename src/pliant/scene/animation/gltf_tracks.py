@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pliant.errors import InvalidParameter, UnreadableFile
-from pliant.io.gltf_file import GltfFile, item
+from pliant.io.mesh_formats.gltf_file import GltfFile, item
 
 Floats = NDArray[np.float64]
 Which = str | int

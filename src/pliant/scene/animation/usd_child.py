@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pliant.io.polydata_child import Refused, hand_over, limit, refusing
+from pliant.io.mesh_formats.polydata_child import Refused, hand_over, limit, refusing
 
 
 def main(path: str, out: str, fps: float, memory: int, seconds: int) -> int:

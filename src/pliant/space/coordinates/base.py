@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from pliant.mesh import Points
-from pliant.numerics.chunks import for_chunks
+from pliant.numerics.compute.chunks import for_chunks
 from pliant.space.coordinates.surface import CageSurface, Floats
 
 _NUMBERS = 400_000  # numbers in the rows of one piece of points: 3 MB, which stay in the cache

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from pliant.numerics.closest_surface import Closest
+from pliant.numerics.meshes.closest_surface import Closest
 from pliant.space.coordinates.surface import CageSurface, Floats
 
 _ZERO = 1e-12

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from pliant.numerics import green
-from pliant.numerics.closest_surface import Closest
+from pliant.numerics.coordinates import green
+from pliant.numerics.meshes.closest_surface import Closest
 from pliant.space.coordinates.base import Coordinates
 from pliant.space.coordinates.footing import spread_out
 from pliant.space.coordinates.surface import Floats

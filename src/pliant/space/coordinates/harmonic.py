@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from pliant.errors import InvalidDeformer
-from pliant.numerics.chunks import for_chunks
+from pliant.numerics.compute.chunks import for_chunks
 from pliant.space.coordinates.base import Coordinates
 from pliant.space.coordinates.footing import foot_slopes, spread_out
 from pliant.space.coordinates.green import Green

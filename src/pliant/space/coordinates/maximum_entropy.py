@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 from scipy.sparse import csr_array
 
 from pliant.errors import NotConverged
-from pliant.numerics import maximum_entropy
+from pliant.numerics.coordinates import maximum_entropy
 from pliant.space.coordinates.base import Coordinates
 from pliant.space.coordinates.footing import foot_slopes, spread_out
 from pliant.space.coordinates.mean_value import MeanValue

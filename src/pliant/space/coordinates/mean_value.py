@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from pliant.numerics import mean_value
+from pliant.numerics.coordinates import mean_value
 from pliant.space.coordinates.base import Coordinates
 from pliant.space.coordinates.footing import spread_out
 from pliant.space.coordinates.surface import Floats

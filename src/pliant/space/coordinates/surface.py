@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pliant.mesh import Points
-from pliant.numerics.closest_surface import Closest, TriangleSearch
+from pliant.numerics.meshes.closest_surface import Closest, TriangleSearch
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]

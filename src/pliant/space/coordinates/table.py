@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.sparse import csr_array, vstack
 
-from pliant.numerics.chunks import for_chunks
-from pliant.numerics.one_thread import one_blas_thread
+from pliant.numerics.compute.chunks import for_chunks
+from pliant.numerics.compute.one_thread import one_blas_thread
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]

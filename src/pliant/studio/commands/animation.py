@@ -15,11 +15,11 @@ from pliant.errors import InvalidParameter, PliantError
 from pliant.io.report import LossReport
 from pliant.scene.animation.formats import endings
 from pliant.scene.clip import Clip
-from pliant.studio.files import file_stem
-from pliant.studio.frames import Frame
 from pliant.studio.jobs import Job
-from pliant.studio.posing import clip_of
+from pliant.studio.modes.posing import clip_of
 from pliant.studio.request import Request, command
+from pliant.studio.serving.files import file_stem
+from pliant.studio.serving.frames import Frame
 from pliant.studio.session import Session
 
 FILMS = (".mp4", ".gif")

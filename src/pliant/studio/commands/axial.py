@@ -13,13 +13,13 @@ from pliant.mesh import Points
 from pliant.scene.stack import Stack
 from pliant.space.axes import unit_axis
 from pliant.space.axial import AxialDeformer
-from pliant.studio.axial.following import Ray, followed, snapped
-from pliant.studio.axial.ghost import ghost
-from pliant.studio.axial.handles import Handle, handles_of
-from pliant.studio.axial.tool import Tool, holds, tool_on
 from pliant.studio.dragging import Dragging, begin, cancel, commit, ongoing
-from pliant.studio.frames import Frame
+from pliant.studio.modes.axial.following import Ray, followed, snapped
+from pliant.studio.modes.axial.ghost import ghost
+from pliant.studio.modes.axial.handles import Handle, handles_of
+from pliant.studio.modes.axial.tool import Tool, holds, tool_on
 from pliant.studio.request import Client, Request, command
+from pliant.studio.serving.frames import Frame
 from pliant.studio.session import Session
 
 _PARALLEL = 0.05

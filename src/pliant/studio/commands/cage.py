@@ -16,11 +16,11 @@ from pliant.scene.scene import Scene
 from pliant.scene.stack import Stack
 from pliant.space.cage import Cage
 from pliant.space.coordinates.kinds import KINDS
-from pliant.studio.caging import METHODS, Plan, plane_across, sketch, told
-from pliant.studio.frames import Frame
 from pliant.studio.jobs import Job
-from pliant.studio.layering import with_layer
+from pliant.studio.modes.caging import METHODS, Plan, plane_across, sketch, told
+from pliant.studio.modes.layering import with_layer
 from pliant.studio.request import Request, command
+from pliant.studio.serving.frames import Frame
 from pliant.studio.session import Session
 
 MOST_VERTICES = 5000

@@ -14,10 +14,10 @@ from pliant.scene.stack import Stack
 from pliant.scene.stack_binding import StackBinding
 from pliant.space.direct import pull as pulled
 from pliant.studio.dragging import Dragging, begin, cancel, commit, ongoing
-from pliant.studio.frames import Frame
-from pliant.studio.layering import with_fields
-from pliant.studio.placements import to_frame
+from pliant.studio.modes.layering import with_fields
+from pliant.studio.modes.placements import to_frame
 from pliant.studio.request import Client, Request, command
+from pliant.studio.serving.frames import Frame
 from pliant.studio.session import Session
 
 

@@ -14,11 +14,11 @@ from pliant.field.measures import principal_strains, volume_ratio
 from pliant.io import meshes, transforms
 from pliant.io.report import LossReport
 from pliant.studio.commands.fields import _moved, _room
-from pliant.studio.files import file_stem
-from pliant.studio.frames import Frame
 from pliant.studio.request import Request, command
+from pliant.studio.seen.spaces import space_map
+from pliant.studio.serving.files import file_stem
+from pliant.studio.serving.frames import Frame
 from pliant.studio.session import Session
-from pliant.studio.spaces import space_map
 
 _CELLS = 16
 

@@ -6,11 +6,11 @@ from typing import Any
 
 from pliant.errors import InvalidParameter
 from pliant.space.extended_ffd import ExtendedFFD
-from pliant.studio.frames import Frame
-from pliant.studio.lattices import links
-from pliant.studio.layering import with_layer
-from pliant.studio.parts import vertices_of
+from pliant.studio.modes.lattices import links
+from pliant.studio.modes.layering import with_layer
 from pliant.studio.request import Request, command
+from pliant.studio.seen.parts import vertices_of
+from pliant.studio.serving.frames import Frame
 from pliant.studio.session import Session
 
 MOST_CONTROLS = 20_000

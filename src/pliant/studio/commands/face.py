@@ -12,10 +12,10 @@ from pliant.face.handles import FaceHandles
 from pliant.scene.layer import Layer
 from pliant.scene.scene import Scene
 from pliant.studio.commands.opening import enter
-from pliant.studio.faces import example_photograph, face_layer, face_scene, looked_at, missing, photograph_of
-from pliant.studio.frames import Frame
-from pliant.studio.layering import free_name
+from pliant.studio.modes.faces import example_photograph, face_layer, face_scene, looked_at, missing, photograph_of
+from pliant.studio.modes.layering import free_name
 from pliant.studio.request import Request, command
+from pliant.studio.serving.frames import Frame
 from pliant.studio.session import Session
 
 HANDLES = "Handles"

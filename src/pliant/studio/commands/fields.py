@@ -11,16 +11,16 @@ from pliant.field.grids import AXES, WarpedGrid, field_grid
 from pliant.field.limiting import limit_to_fold_free
 from pliant.field.vectors import arrows
 from pliant.mesh import Points
-from pliant.numerics.parity import inside
+from pliant.numerics.coordinates.parity import inside
 from pliant.numerics.ragged import Ragged
 from pliant.rendering.palette import SEQUENTIAL, color_table
 from pliant.space.bezier_ffd import BezierFFD
 from pliant.space.bspline_ffd import BSplineFFD
-from pliant.studio.frames import Frame
-from pliant.studio.quantities import quantity
 from pliant.studio.request import Request, command
+from pliant.studio.seen.quantities import quantity
+from pliant.studio.seen.spaces import space_map
+from pliant.studio.serving.frames import Frame
 from pliant.studio.session import Session
-from pliant.studio.spaces import space_map
 
 _MOST_LINES = 64
 _ROOM = 0.06  # around the shape, as part of its extent

@@ -9,13 +9,13 @@ from pliant.scene.kinds import all_kinds
 from pliant.scene.stack import Stack
 from pliant.space.bezier_ffd import BezierFFD
 from pliant.space.bspline_ffd import BSplineFFD
-from pliant.studio.frames import Frame
-from pliant.studio.lattices import principal_axes
-from pliant.studio.layering import with_fields, with_layer
-from pliant.studio.parts import vertices_of
+from pliant.studio.modes.lattices import principal_axes
+from pliant.studio.modes.layering import with_fields, with_layer
 from pliant.studio.request import Request, command
+from pliant.studio.seen.parts import vertices_of
+from pliant.studio.seen.titles import titled
+from pliant.studio.serving.frames import Frame
 from pliant.studio.session import Session
-from pliant.studio.titles import titled
 
 MOST_CONTROLS = 100_000
 

@@ -6,8 +6,8 @@ import numpy as np
 
 from pliant.errors import InvalidParameter
 from pliant.io.files import read_bytes
-from pliant.studio.frames import Frame
 from pliant.studio.request import Request, command
+from pliant.studio.serving.frames import Frame
 from pliant.studio.session import Session
 
 _MOST_TEXTURE = 64 << 20

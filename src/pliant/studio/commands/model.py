@@ -19,13 +19,13 @@ from pliant.shape.registration import Pose
 from pliant.shape.surface_samples import farthest
 from pliant.studio.commands.opening import main_file
 from pliant.studio.dragging import begin, cancel, commit, ongoing
-from pliant.studio.frames import Frame
-from pliant.studio.layering import with_layer
-from pliant.studio.model_drag import ModelDrag
-from pliant.studio.model_fit import Fitting, forget_target, keep_target, target_frame, target_of
+from pliant.studio.modes.layering import with_layer
+from pliant.studio.modes.model_drag import ModelDrag
+from pliant.studio.modes.model_fit import Fitting, forget_target, keep_target, target_frame, target_of
+from pliant.studio.modes.shape_models import NAME, built, layers_above, model_layer
 from pliant.studio.request import Request, command
+from pliant.studio.serving.frames import Frame
 from pliant.studio.session import Session
-from pliant.studio.shape_models import NAME, built, layers_above, model_layer
 
 _MOST_ARROWS = 600
 _MOST_ROUNDS = 500

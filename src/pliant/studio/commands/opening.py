@@ -13,14 +13,14 @@ from pliant.io.files import read_bytes
 from pliant.mesh import PolygonMesh
 from pliant.scene.project import load_project, save_project
 from pliant.scene.scene import Scene
-from pliant.studio.faces import photograph_of
-from pliant.studio.files import CHUNK, inside
-from pliant.studio.frames import Frame
+from pliant.studio.examples.sample_scenes import SCENES
+from pliant.studio.examples.samples import sample
+from pliant.studio.modes.faces import photograph_of
+from pliant.studio.modes.shape_models import model_scene
 from pliant.studio.request import Request, command
-from pliant.studio.sample_scenes import SCENES
-from pliant.studio.samples import sample
+from pliant.studio.serving.files import CHUNK, inside
+from pliant.studio.serving.frames import Frame
 from pliant.studio.session import Session
-from pliant.studio.shape_models import model_scene
 
 PROJECT = ".pliant"
 MOST_POINTS = 8_000_000

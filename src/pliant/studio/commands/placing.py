@@ -14,11 +14,11 @@ from pliant.scene.scene import Scene
 from pliant.scene.stack import Stack
 from pliant.space.affine import Affine
 from pliant.studio.dragging import Dragging, begin, cancel, commit, ongoing
-from pliant.studio.frames import Frame
-from pliant.studio.layering import free_name
-from pliant.studio.placements import frame_field, frame_of, framed, pivot_of, way_of
-from pliant.studio.posing import clip_of, with_key
+from pliant.studio.modes.layering import free_name
+from pliant.studio.modes.placements import frame_field, frame_of, framed, pivot_of, way_of
+from pliant.studio.modes.posing import clip_of, with_key
 from pliant.studio.request import Client, Request, command
+from pliant.studio.serving.frames import Frame
 from pliant.studio.session import Session
 
 

@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 from pliant.deformer import Controls, Deformer
 from pliant.errors import InvalidParameter
 from pliant.rendering.palette import SEQUENTIAL, color_table
-from pliant.studio.frames import Frame
-from pliant.studio.lattices import axes_of, links, places_around
-from pliant.studio.placements import to_frame, to_world
+from pliant.studio.modes.lattices import axes_of, links, places_around
+from pliant.studio.modes.placements import to_frame, to_world
 from pliant.studio.request import Request, command
+from pliant.studio.serving.frames import Frame
 from pliant.studio.session import Session
 
 

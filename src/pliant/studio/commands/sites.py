@@ -8,11 +8,11 @@ from pliant.errors import InvalidParameter
 from pliant.mesh import Points, PolygonMesh
 from pliant.shape.surface_samples import surface_samples
 from pliant.space.dirichlet_ffd import DirichletFFD
-from pliant.studio.frames import Frame
-from pliant.studio.layering import with_layer
+from pliant.studio.modes.layering import with_layer
+from pliant.studio.modes.siting import apart, mirrored, with_sites, without_sites
 from pliant.studio.request import Request, command
+from pliant.studio.serving.frames import Frame
 from pliant.studio.session import Session
-from pliant.studio.siting import apart, mirrored, with_sites, without_sites
 
 MOST = 2000
 _NAME = "Sites"

@@ -8,14 +8,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pliant.errors import InvalidParameter
-from pliant.numerics.geodesics import geodesic_distance
+from pliant.numerics.meshes.geodesics import geodesic_distance
 from pliant.studio.dragging import begin, cancel, commit, ongoing
-from pliant.studio.frames import Frame
-from pliant.studio.parts import vertices_of
+from pliant.studio.modes.skeletons import show_skeleton, skeleton_frame
+from pliant.studio.modes.surface_drag import METHODS, SurfaceDrag, edit_of, method_of
 from pliant.studio.request import Request, command
+from pliant.studio.seen.parts import vertices_of
+from pliant.studio.serving.frames import Frame
 from pliant.studio.session import Session
-from pliant.studio.skeletons import show_skeleton, skeleton_frame
-from pliant.studio.surface_drag import METHODS, SurfaceDrag, edit_of, method_of
 from pliant.surface import regions
 from pliant.surface.screen import SeenMesh
 

@@ -9,12 +9,12 @@ from numpy.typing import NDArray
 
 from pliant.errors import InvalidParameter
 from pliant.scene.template_library import save_template, template, templates, user_folder
-from pliant.studio.frames import Frame
-from pliant.studio.posing import clip_of
-from pliant.studio.previews import Small, preview
+from pliant.studio.modes.posing import clip_of
+from pliant.studio.modes.templating import begun_anew, on_top
 from pliant.studio.request import Request, command
+from pliant.studio.seen.previews import Small, preview
+from pliant.studio.serving.frames import Frame
 from pliant.studio.session import Session
-from pliant.studio.templating import begun_anew, on_top
 
 _SMALL = "small mesh"
 _STRONGEST = 4.0

@@ -13,12 +13,12 @@ from pliant.mesh import Points
 from pliant.scene.clip import Clip
 from pliant.scene.easing import checked_easing
 from pliant.scene.stack import Stack
-from pliant.studio.clip_state import track_state
 from pliant.studio.dragging import Dragging, begin, cancel, commit, ongoing
-from pliant.studio.frames import Frame
-from pliant.studio.key_edits import doubled_keys, eased_keys, key_names, moved_keys, stretched, without_keys
-from pliant.studio.posing import clip_of, value_of, with_key
+from pliant.studio.modes.clip_state import track_state
+from pliant.studio.modes.key_edits import doubled_keys, eased_keys, key_names, moved_keys, stretched, without_keys
+from pliant.studio.modes.posing import clip_of, value_of, with_key
 from pliant.studio.request import Client, Request, command
+from pliant.studio.serving.frames import Frame
 from pliant.studio.session import Session
 
 MOST_FRAMES = 100_000

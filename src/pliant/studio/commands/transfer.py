@@ -15,14 +15,14 @@ from pliant.io import meshes
 from pliant.mesh import Points
 from pliant.scene.scene import Scene
 from pliant.scene.stack import Stack
-from pliant.studio import transferring
 from pliant.studio.dragging import Dragging, begin, cancel, commit, ongoing
-from pliant.studio.drawn import DrawnMesh
-from pliant.studio.files import Upload
-from pliant.studio.frames import Frame
+from pliant.studio.examples.transfer_sample import arm, posed_bar
+from pliant.studio.modes import transferring
 from pliant.studio.request import Client, Request, command
+from pliant.studio.seen.drawn import DrawnMesh
+from pliant.studio.serving.files import Upload
+from pliant.studio.serving.frames import Frame
 from pliant.studio.session import Session
-from pliant.studio.transfer_sample import arm, posed_bar
 from pliant.surface.shape_keys import ShapeKeys
 
 

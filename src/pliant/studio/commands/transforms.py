@@ -12,12 +12,12 @@ from pliant.errors import InvalidParameter, PliantWarning
 from pliant.io.transforms import read_transform
 from pliant.scene.kinds import kind_of
 from pliant.studio.commands.opening import main_file
-from pliant.studio.frames import Frame
-from pliant.studio.lattices import lattice_shape, links
-from pliant.studio.layering import with_layer
+from pliant.studio.modes.lattices import lattice_shape, links
+from pliant.studio.modes.layering import with_layer
 from pliant.studio.request import Request, command
+from pliant.studio.seen.titles import titled
+from pliant.studio.serving.frames import Frame
 from pliant.studio.session import Session
-from pliant.studio.titles import titled
 
 
 @command("transform.preview")
@@ -86,7 +86,7 @@ def _summary(found: SpaceDeformer) -> str:
 
 def _part_inside(points: np.ndarray[Any, np.dtype[np.float64]], found: SpaceDeformer) -> float:
     """How much of the mesh lies in the box of a lattice's control points, measured along its own axes."""
-    from pliant.studio.lattices import axes_of
+    from pliant.studio.modes.lattices import axes_of
 
     axes = axes_of(found)
     corners = found.rest.reshape(-1, 3) @ axes

@@ -1,0 +1,1 @@
+"""Transforms: one module a format, and what they share."""

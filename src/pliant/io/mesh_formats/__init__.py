@@ -1,0 +1,1 @@
+"""Meshes: one module a format, and what they share."""

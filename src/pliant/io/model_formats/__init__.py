@@ -1,0 +1,1 @@
+"""Shape models: containers, and what is in them."""

@@ -1,0 +1,1 @@
+"""How kernels run: compiled once, eight lanes wide, driven over chunks by threads."""

@@ -1,0 +1,1 @@
+"""Coordinates of points in cages of triangles, and which points lie inside."""

@@ -1,0 +1,1 @@
+"""Polynomials on grids of cells: the sums, inverses and bounds of lattices."""

@@ -1,0 +1,1 @@
+"""Maps of space at many points: sections, radial sums, inverses, normals."""

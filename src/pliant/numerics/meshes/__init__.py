@@ -1,0 +1,1 @@
+"""Polygons and triangles: their neighbours, distances, Laplacians and closest points."""

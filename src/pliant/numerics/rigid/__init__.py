@@ -1,0 +1,1 @@
+"""Rotations: the nearest ones, their quaternions, and energies of what is nearly rigid."""

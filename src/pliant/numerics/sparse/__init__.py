@@ -1,0 +1,1 @@
+"""Sparse Cholesky: orders, elimination, fronts and solves."""

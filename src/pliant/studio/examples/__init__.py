@@ -1,0 +1,1 @@
+"""Shapes and scenes to try the studio on, made on the spot."""

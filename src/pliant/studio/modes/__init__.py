@@ -1,0 +1,1 @@
+"""What the modes do on the server, beyond single commands."""

@@ -1,0 +1,172 @@
+"""What can be taken hold of: a small table of what each deformer's fields mean.
+
+A handle is a few numbers of a deformer and the place that follows from them. Dragging it finds the numbers at which
+the place lies under the pointer (:mod:`pliant.studio.modes.axial.following`), so that no handle needs an inverse, and a
+deformer that is new needs a line here: where its handle shall be seen.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from pliant.mesh import Points
+from pliant.space.bend import Bend
+from pliant.space.flare import Flare
+from pliant.space.scale import Scale
+from pliant.space.sine import Sine
+from pliant.space.squash import Squash
+from pliant.space.taper import Taper
+from pliant.space.twist import Twist
+from pliant.space.wave import Wave
+from pliant.studio.modes.axial.moving import moved_to, rolled_to, turned_to
+from pliant.studio.modes.axial.tool import Tool
+
+Floats = NDArray[np.float64]
+Unit = Literal["radians", "factor", "length", "place", "direction"]
+Place = Callable[[Tool], Points]
+
+
+@dataclass(frozen=True)
+class Handle:
+    """Something to take hold of.
+
+    Parameters
+    ----------
+    name
+        Of the field, or of the bound, that it sets.
+    unit
+        What its numbers are.
+    read
+        (k,) the numbers of a tool.
+    write
+        A tool with other numbers.
+    place
+        (1, 3) where a tool's handle is.
+    """
+
+    name: str
+    unit: Unit
+    read: Callable[[Tool], Floats]
+    write: Callable[[Tool, Floats], Tool]
+    place: Place
+
+
+def handles_of(tool: Tool) -> tuple[Handle, ...]:
+    """The handles of a tool: its own first, then those of its axis."""
+    deformer = tool.deformer
+    own = next((rows for kind, rows in TABLE.items() if isinstance(deformer, kind)), ())
+    if isinstance(deformer, Scale):
+        return (*own, _ORIGIN)
+    bounds = _RADII if deformer.radial else _BOUNDS
+    normal = (_NORMAL,) if getattr(deformer, "normal", None) is not None else ()
+    return (*own, *bounds, _ORIGIN, _AXIS, *normal)
+
+
+def number(name: str, place: Place, unit: Unit = "factor") -> Handle:
+    """A number of the deformer."""
+    return Handle(
+        name,
+        unit,
+        lambda tool: np.array([getattr(tool.deformer, name) or 0.0]),
+        lambda tool, value: tool.having(**{name: float(value[0])}),
+        place,
+    )
+
+
+def carried(u: float, v: float, t: float) -> Place:
+    """Where the deformer takes a place: sizes across the axis, and 0 to 1 between the bounds."""
+    return lambda tool: tool.carried(tool.at(u, v, tool.between(t))[None])
+
+
+def crest(tool: Tool) -> Points:
+    """The top of a sine's first wave."""
+    deformer = tool.deformer
+    t = (np.pi / 2 + deformer.phase) / (2 * np.pi * deformer.waves or 1.0)
+    return tool.carried(tool.at(0.0, 0.0, tool.between(np.clip(t, 0.0, 1.0)))[None])
+
+
+def wave_end(tool: Tool) -> Points:
+    """Where a sine's first wave ends."""
+    return tool.above(tool.at(0.0, 0.5, tool.between(1.0 / (tool.deformer.waves or 1.0)))[None])
+
+
+def ripple(t: Callable[[Any], float]) -> Place:
+    """A place of a pond's surface, at a distance from its middle."""
+
+    def place(tool: Tool) -> Points:
+        distance = tool.between(t(tool.deformer)) / tool.size
+        return tool.carried(tool.at(distance, 0.0, tool.origin @ tool.along)[None])
+
+    return place
+
+
+def stretched(column: int) -> Place:
+    """Where a scale takes the end of one of its axes."""
+    return lambda tool: tool.carried((tool.origin + tool.size * tool.axes[:, column])[None])
+
+
+def _center(tool: Tool) -> Points:
+    center = tool.deformer.center
+    return tool.carried(tool.at(0.0, 0.55, tool.between(0.5) if center is None else center)[None])
+
+
+def _bound(end: int, place: Place) -> Handle:
+    def write(tool: Tool, value: Floats) -> Tool:
+        bounds = list(tool.deformer.bounds)
+        bounds[end] = float(value[0])
+        return tool.having(bounds=tuple(bounds))
+
+    return Handle(("low", "high")[end], "length", lambda tool: np.array([tool.deformer.bounds[end]]), write, place)
+
+
+def _reach(tool: Tool) -> Floats:
+    """(3,) from the origin to the tip of the axis, beyond the high bound."""
+    deformer, along = tool.deformer, tool.along
+    beyond = 0.0 if deformer.radial else max(deformer.bounds[1] - tool.origin @ along, 0.0)
+    return np.asarray((beyond + 0.35 * tool.size) * along)
+
+
+TABLE: dict[type, tuple[Handle, ...]] = {
+    Twist: (number("angle", carried(1, 0, 1), "radians"),),
+    Taper: (number("factor", carried(1, 0, 1)),),
+    Flare: (
+        number("start", carried(1, 0, 0)),
+        number("end", carried(1, 0, 1)),
+        number("bulge", carried(1, 0, 0.5)),
+    ),
+    Squash: (number("factor", carried(1, 0, 1)),),
+    Bend: (number("angle", carried(0, 0, 1), "radians"), number("center", _center, "length")),
+    Sine: (number("amplitude", crest, "length"), number("waves", wave_end)),
+    Wave: (
+        number("amplitude", ripple(lambda deformer: deformer.phase / (2 * np.pi * deformer.waves or 1.0)), "length"),
+        number("waves", ripple(lambda deformer: 1.0 / (deformer.waves or 1.0))),
+    ),
+    Scale: (number("x", stretched(0)), number("y", stretched(1)), number("z", stretched(2))),
+}
+_BOUNDS = tuple(
+    _bound(end, lambda tool, end=end: tool.above(tool.at(0.0, -1.0, tool.between(end))[None]))  # type: ignore[misc]
+    for end in (0, 1)
+)
+_RADII = tuple(
+    _bound(
+        end,
+        lambda tool, end=end: tool.above(  # type: ignore[misc]
+            tool.at(0.0, -tool.deformer.bounds[end] / tool.size, tool.origin @ tool.along)[None]
+        ),
+    )
+    for end in (0, 1)
+)
+_ORIGIN = Handle("origin", "place", lambda tool: tool.origin, moved_to, lambda tool: tool.above(tool.origin[None]))
+_AXIS = Handle("axis", "direction", _reach, turned_to, lambda tool: tool.above((tool.origin + _reach(tool))[None]))
+_NORMAL = Handle(
+    "normal",
+    "direction",
+    lambda tool: 1.2 * tool.size * tool.axes[:, 0],
+    rolled_to,
+    lambda tool: tool.above((tool.origin + 1.2 * tool.size * tool.axes[:, 0])[None]),
+)

@@ -1,0 +1,1 @@
+"""The studio as a server: who may talk to it, and what travels."""
