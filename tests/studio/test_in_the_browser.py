@@ -39,6 +39,33 @@ def test_a_dragged_control_point_moves_the_mesh_as_the_library_does(launched, vi
     page.picture("dragged")
 
 
+def test_a_finger_drags_a_control_point_and_turns_the_view(launched, view):
+    page = view(launched(round_scene()), has_touch=True)
+    page.drawn()
+    page.handles()
+    screen = page.page.context.new_cdp_session(page.page)
+
+    def swipe(start, by):
+        for part in (0.0, 0.25, 0.5, 0.75, 1.0):
+            point = {"x": start[0] + part * by[0], "y": start[1] + part * by[1]}
+            kind = "touchStart" if part == 0 else "touchMove"
+            screen.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": [point]})
+        screen.send("Input.dispatchTouchEvent", {"type": "touchEnd", "touchPoints": []})
+
+    revision = page.session.revision
+    x, y = page.control(63)
+    swipe((x + 9, y - 6), (60, -40))  # a finger need not be exact
+    page.committed(revision)
+    moved = page.session.scene.stack["Lattice"].deformer
+    assert np.flatnonzero(np.linalg.norm(moved.displacements, axis=-1).reshape(-1)).tolist() == [63]
+    same_points(page)
+    before = page.control(0)
+    swipe((520, 590), (90, -30))
+    page.settled()
+    assert np.hypot(*np.subtract(page.control(0), before)) > 10
+    assert page.session.revision == revision + 1
+
+
 def test_a_typed_displacement_is_exact_and_can_be_undone(launched, view):
     page = view(launched(round_scene()))
     page.drawn()
