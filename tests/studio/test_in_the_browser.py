@@ -27,6 +27,7 @@ def test_a_dragged_control_point_moves_the_mesh_as_the_library_does(launched, vi
     revision = page.session.revision
     page.drag(page.control(63), (70, -50), release=False)
     page.until("window.pliantStudio.latencies.length > 0")
+    page.settled()  # the last move, too, has been answered and drawn
     during = page.positions(len(page.session.scene.mesh.points))
     assert page.session.revision == revision  # previews are no history
     page.page.mouse.up()

@@ -83,12 +83,18 @@ def frame(points: Floats, axes: Floats, aspect: float, *, margin: float = 0.07, 
     wide = np.tan(ANGLE / 2) * aspect * (1 - 2 * margin - right)
     nearest = 1e-9 * float(np.ptp(seen, axis=0).max()) or 4.0  # one point is looked at from anywhere
     middle = (seen.min(axis=0) + seen.max(axis=0)) / 2
-    distance = 1.0
+    distance = _distance(seen - middle, wide, tall, nearest)
     for _ in range(8):  # the middle of the picture depends on the distance and the other way round; this settles fast
         x, y, depth = (seen - middle).T
-        distance = float(max((np.abs(x) / wide + depth).max(), (np.abs(y) / tall + depth).max(), nearest))
         for axis, offset in enumerate((x, y)):
             angle = offset / (distance - np.minimum(depth, 0.999 * distance))
             middle[axis] += distance * (angle.min() + angle.max()) / 4
+        distance = _distance(seen - middle, wide, tall, nearest)
     focus = middle @ axes
     return Camera(focus + distance * axes[2], focus, axes[1], right)
+
+
+def _distance(seen: Floats, wide: float, tall: float, nearest: float) -> float:
+    """The least distance from the middle of the picture at which all points are in it."""
+    x, y, depth = seen.T
+    return float(max((np.abs(x) / wide + depth).max(), (np.abs(y) / tall + depth).max(), nearest))
