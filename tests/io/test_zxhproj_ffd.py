@@ -7,7 +7,7 @@ import warnings
 import nibabel as nib
 import numpy as np
 import pytest
-from hypothesis import given, settings
+from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import pliant as pl
@@ -392,14 +392,16 @@ def test_comes_back_byte_for_byte(path):
 def test_a_new_lattice_comes_back_within_the_error_reported(tmp_path_factory, seed, hand, half_turn):
     rng = np.random.default_rng(seed)
     quaternion = rng.normal(size=4) * [0 if half_turn else 1, 1, 1, 1]
-    axes = nib.quaternions.quat2mat(quaternion / np.linalg.norm(quaternion)) * [1, 1, hand]
+    quaternion /= np.linalg.norm(quaternion)
+    assume(half_turn or abs(quaternion[0]) > 2e-3)  # so near a half turn, six decimals of b, c, d do not tell a
+    axes = nib.quaternions.quat2mat(quaternion) * [1, 1, hand]
     deformer = pl.BSplineFFD(
         displacements=rng.normal(size=(3, 4, 5, 3)), origin=rng.normal(size=3), spacing=rng.uniform(5, 20, 3), axes=axes
     )
     path = tmp_path_factory.mktemp("new") / "new.FFD"
     report = pl.write_transform(deformer, path)
     again = pl.read_transform(path)
-    assert np.abs(again.rest - deformer.rest).max() < 5e-3  # a half turn costs up to half the digits
+    assert np.abs(again.rest - deformer.rest).max() < 1e-3  # a half turn costs up to half the digits
     assert np.abs(again.displacements - deformer.displacements).max() < 1e-5
     assert any("pull-back" in note for note in report.notes)
     assert any("edge" in note for note in report.notes)

@@ -70,11 +70,15 @@ def rounded_quaternion(axes: Floats, decimals: int) -> tuple[float, Floats]:
     """The handedness and the (b, c, d) of so many decimals that come nearest to a (3, 3) matrix of axes.
 
     Rounding each number to the nearest is not the best: near a half turn an error of 5e-7 in b, c, d becomes one
-    of 1e-3 in a. The 27 neighbours are tried.
+    of 1e-3 in a. The neighbours are tried, farther ones where near ones leave more than a few of the last digits.
     """
     qfac, exact = quaternion_of(axes)
-    middle = np.round(exact, decimals)
-    steps = np.array(list(product((0.0, -1.0, 1.0), repeat=3))) * 10.0**-decimals
-    candidates = np.round(middle + steps, decimals) + 0.0
-    errors = [np.abs(axes_of(qfac, bcd) - axes).max() for bcd in candidates]
-    return qfac, candidates[int(np.argmin(errors))]
+    middle, unit = np.round(exact, decimals), 10.0**-decimals
+    for reach in (1, 3, 6):
+        steps = np.array(list(product(range(-reach, reach + 1), repeat=3))) * unit
+        candidates = np.round(middle + steps, decimals) + 0.0
+        errors = [np.abs(axes_of(qfac, bcd) - axes).max() for bcd in candidates]
+        best = int(np.argmin(errors))
+        if errors[best] <= 8 * unit:
+            break
+    return qfac, candidates[best]
