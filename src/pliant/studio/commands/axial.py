@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from pliant.errors import InvalidParameter
 from pliant.mesh import Points
+from pliant.scene.keyed import tool_of
 from pliant.scene.stack import Stack
 from pliant.space.axes import unit_axis
 from pliant.space.axial import AxialDeformer
@@ -17,7 +18,8 @@ from pliant.studio.dragging import Dragging, begin, cancel, commit, ongoing
 from pliant.studio.modes.axial.following import Ray, followed, snapped
 from pliant.studio.modes.axial.ghost import ghost
 from pliant.studio.modes.axial.handles import Handle, handles_of
-from pliant.studio.modes.axial.tool import Tool, holds, tool_on
+from pliant.studio.modes.axial.tool import Tool, exchanged, holds, tool_on
+from pliant.studio.modes.placements import to_frame
 from pliant.studio.request import Client, Request, command
 from pliant.studio.serving.frames import Frame
 from pliant.studio.session import Session
@@ -40,7 +42,9 @@ class HandleDrag(Dragging):
         self._tool = followed(self._tool, self._handle, Ray(eye, unit_axis(direction)))
         shown = snapped(self._tool, self._handle) if request.truth("snap") else self._tool
         before = self._binding.result
-        self._binding = self._binding.updated(self._start.replace(self.layer, deformer=shown.deformer))
+        self._binding = self._binding.updated(
+            self._start.replace(self.layer, deformer=exchanged(self._start[self.layer], shown.deformer))
+        )
         points = self._binding.result
         return np.flatnonzero((points != before).any(axis=1)), points, _arrays(shown)
 
@@ -78,9 +82,10 @@ def fit(session: Session, request: Request) -> None:
     """Lay a layer's axis through the middle of the shape that it is given, and its bounds around it."""
     name = request.text("layer")
     stack = session.required.stack
-    deformer, given = stack[name].deformer, session.shown.binding.below(name)
-    if not holds(deformer):
+    layer = stack[name]
+    if not holds(layer.deformer):
         raise InvalidParameter(f"layer {name!r} has no axis")
+    deformer, given = tool_of(layer.deformer), to_frame(layer.deformer, session.shown.binding.below(name))
     if isinstance(deformer, AxialDeformer):
         turned = _along(deformer, request.text("axis")) if "axis" in request.values else deformer
         own = {key: getattr(turned, key) for key in ("axis", "normal") if hasattr(turned, key)}
@@ -90,7 +95,7 @@ def fit(session: Session, request: Request) -> None:
     else:
         fitted = replace(deformer, origin=type(deformer).around(given).origin)  # type: ignore[attr-defined, type-var]
     session.drop_drag()
-    session.commit(session.required.replace(stack=stack.replace(name, deformer=fitted)), "fit", name)
+    session.commit(session.required.replace(stack=stack.replace(name, deformer=exchanged(layer, fitted))), "fit", name)
 
 
 def _along(deformer: AxialDeformer, axis: str) -> AxialDeformer:

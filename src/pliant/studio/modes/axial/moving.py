@@ -68,10 +68,19 @@ def _called(direction: Floats) -> Any:
 def _shortest_turn(start: Floats, end: Floats) -> Floats:
     """(3, 3) the rotation by the least angle from one unit vector to another."""
     cosine = float(start @ end)
-    if cosine < -1 + 1e-12:  # half a turn, about anything across
-        across = np.cross(start, np.eye(3)[np.abs(start).argmin()])
-        across /= np.linalg.norm(across)
-        return np.asarray(2 * np.outer(across, across) - np.eye(3))
+    if cosine < -0.5:  # half a turn first, and then what is missing: exact, however near to half a turn it is
+        across = _across(start, end)
+        half = 2 * np.outer(across, across) - np.eye(3)
+        return np.asarray(_shortest_turn(-start, end) @ half)
     axis = np.cross(start, end)
     cross = np.array([[0, -axis[2], axis[1]], [axis[2], 0, -axis[0]], [-axis[1], axis[0], 0]])
     return np.asarray(np.eye(3) + cross + cross @ cross / (1 + cosine))
+
+
+def _across(start: Floats, end: Floats) -> Floats:
+    """(3,) a unit vector at right angles to two; to the first, and any, where they lie on one line."""
+    across = np.cross(start, end)
+    if np.linalg.norm(across) < _LEVEL:
+        across = np.cross(start, np.eye(3)[np.abs(start).argmin()])
+    across = across - (across @ start) * start
+    return np.asarray(across / np.linalg.norm(across))

@@ -1,4 +1,7 @@
-"""A deformer along an axis as something to hold: its frame, its size, and how it is seen through the layers above."""
+"""A deformer along an axis as something to hold: its frame, its size, and how it is seen through the layers above.
+
+One that was placed elsewhere is held in its own frame; where it stands comes before the layers above.
+"""
 
 from __future__ import annotations
 
@@ -9,11 +12,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pliant.deformer import SpaceDeformer
+from pliant.deformer import Deformer, SpaceDeformer
 from pliant.mesh import Points
+from pliant.scene.keyed import tool_of
+from pliant.scene.layer import Layer
 from pliant.scene.stack import Stack
 from pliant.space.axial import AxialDeformer
+from pliant.space.placed import Placed, place
 from pliant.space.scale import Scale
+from pliant.studio.modes.placements import to_world
 
 Floats = NDArray[np.float64]
 _ROOM = 1.08  # around the shape, so that handles stand clear of it
@@ -32,7 +39,7 @@ class Tool:
     envelope
         How much of it there is.
     above
-        What the layers above make of (n, 3) points.
+        Where (n, 3) points of the deformer's frame are seen: where it is placed, and behind the layers above.
     """
 
     deformer: Any
@@ -77,15 +84,21 @@ class Tool:
         return self.above(points + self.envelope * (self.deformer(points) - points))
 
 
-def holds(deformer: Any) -> bool:
-    """Whether there are handles for a deformer."""
-    return isinstance(deformer, AxialDeformer | Scale)
+def holds(deformer: Deformer) -> bool:
+    """Whether there are handles for a deformer, wherever it is placed."""
+    return isinstance(tool_of(deformer), AxialDeformer | Scale)
 
 
 def tool_on(stack: Stack, layer: str, below: Points) -> Tool:
-    """The tool of a layer, as large as the shape that it is given is wide."""
+    """The tool of a layer, as large as the shape that it is given is wide; placing it takes its size along."""
     found = stack[layer]
-    return Tool(found.deformer, size_of(found.deformer, below), found.envelope, _above(stack, layer))
+    deformer = tool_of(found.deformer)
+    return Tool(deformer, size_of(deformer, below), found.envelope, _seen(stack, layer))
+
+
+def exchanged(layer: Layer, deformer: SpaceDeformer) -> SpaceDeformer:
+    """Another deformer for a layer, placed where its own is."""
+    return place(deformer, layer.deformer.frame) if isinstance(layer.deformer, Placed) else deformer
 
 
 def size_of(deformer: Any, points: Points) -> float:
@@ -95,6 +108,12 @@ def size_of(deformer: Any, points: Points) -> float:
         offsets = offsets @ deformer.frame[:2, :3].T
     reach = float(np.sqrt(np.einsum("ij,ij->i", offsets, offsets).max(initial=0.0)))
     return _ROOM * reach or 1.0
+
+
+def _seen(stack: Stack, layer: str) -> Callable[[Points], Points]:
+    """From the frame of a layer's deformer to the world, and on through the layers above."""
+    deformer, above = stack[layer].deformer, _above(stack, layer)
+    return lambda points: above(to_world(deformer, points))
 
 
 def _above(stack: Stack, layer: str) -> Callable[[Points], Points]:
