@@ -188,6 +188,7 @@ def test_the_skeleton_beside_the_mesh_is_picked_and_follows(launched, view):
     nodes = np.array(page.ask(f"{PROBE}.nodes()")).reshape(-1, 3)
     np.testing.assert_allclose(nodes, skeleton.following(now - BAR.points), atol=1e-9)
     page.picture("surface-skeleton")
+    it_swings_about_its_joint(page, made, revision + 1)
     vertex = place(page, 5 * 40 + 35)
     clay = page.pixels(*vertex)[0, 0].astype(int)
     page.page.get_by_label("Mesh", exact=True).click()
@@ -197,3 +198,20 @@ def test_the_skeleton_beside_the_mesh_is_picked_and_follows(launched, view):
     page.ask("window.pliantStudio.mode('look')")
     page.settled()
     assert np.abs(page.pixels(*place(page, 5 * 40 + 35))[0, 0].astype(int) - clay).max() < 40  # there again
+
+
+def it_swings_about_its_joint(page, made, revision):
+    """Turned by the gizmo, the handle goes around the region's fixed edge."""
+    page.page.keyboard.press("r")
+    page.settled()
+    joint = page.ask(f"{PROBE}.joint()")
+    page.drag((joint["x"] + 6, joint["y"] + 3), (0, -50), steps=6)  # inside the rings: about an axis across the drag
+    page.committed(revision)
+    after = page.session.scene.stack["Edit"].deformer
+    edge = BAR.points[made.bind(BAR).constraints.belt].mean(axis=0)
+    before, now = (each.goal.mean(axis=0) - edge for each in (made, after))
+    np.testing.assert_allclose(np.linalg.norm(now), np.linalg.norm(before), rtol=1e-4)
+    assert np.linalg.norm(now - before) > 0.1
+    expected = after(BAR).points
+    np.testing.assert_allclose(page.positions(len(expected)), expected, atol=1e-5)
+    page.picture("surface-swung")

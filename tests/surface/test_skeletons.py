@@ -8,6 +8,7 @@ from surface_shapes import sheet, tube, two_legs
 
 import pliant as pl
 from pliant.errors import InvalidParameter, InvalidTarget
+from pliant.surface.contour_skeletons import known_skeleton
 from pliant.surface.isolines import isolines
 
 
@@ -83,3 +84,15 @@ def test_wrong_arguments_are_named():
     for arguments, cause in (((0,), "contours is 0"), ((5, "w"), "no scalar"), ((5, [1.0]), "finite numbers")):
         with pytest.raises(InvalidParameter, match=cause):
             pl.contour_skeleton(mesh, *arguments)
+
+
+def test_a_known_skeleton_is_the_same_one_until_it_is_asked_for_otherwise():
+    mesh = tube(30, 12)
+    first = known_skeleton(mesh, 9, None, 10)
+    fresh = pl.contour_skeleton(mesh, 9, eigenvectors=10)
+    assert known_skeleton(mesh, 9, None, 10) is first
+    np.testing.assert_array_equal(first.groups, fresh.groups)
+    np.testing.assert_allclose(first.points, fresh.points, atol=1e-12)
+    assert len(known_skeleton(mesh, 6, None, 10).points) != len(first.points)
+    by_height = known_skeleton(mesh, 9, mesh.points[:, 2], 10)
+    np.testing.assert_array_equal(by_height.groups, known_skeleton(mesh, 9, "z", 10).groups)

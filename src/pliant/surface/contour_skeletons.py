@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import weakref
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,6 +22,9 @@ Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
 _SMALLEST = 8  # vertices: a component with fewer is one group
+
+_known: weakref.WeakKeyDictionary[PolygonMesh, dict[tuple[int, str | None, int], ContourSkeleton]]
+_known = weakref.WeakKeyDictionary()  # meshes never change
 
 
 @dataclass(frozen=True, eq=False)
@@ -112,6 +116,19 @@ def contour_skeleton(
         links.append(part.links + count)
         count += len(part.points)
     return ContourSkeleton(np.vstack(points), groups, np.vstack(links), field)
+
+
+def known_skeleton(
+    mesh: PolygonMesh, contours: int, scalar: ArrayLike | str | None, eigenvectors: int
+) -> ContourSkeleton:
+    """The contour skeleton of a mesh, computed once as long as the mesh is there; only to be looked at."""
+    if scalar is not None and not isinstance(scalar, str):
+        return contour_skeleton(mesh, contours, scalar, eigenvectors=eigenvectors)
+    kept = _known.setdefault(mesh, {})
+    asked = (contours, scalar, eigenvectors)
+    if asked not in kept:
+        kept[asked] = contour_skeleton(mesh, contours, scalar, eigenvectors=eigenvectors)
+    return kept[asked]
 
 
 def _scalar_of(mesh: PolygonMesh, scalar: ArrayLike | str) -> Floats:

@@ -16,7 +16,7 @@ from pliant.numerics.meshes.geodesics import geodesic_distance
 from pliant.numerics.meshes.laplacians import cotangent_weights
 from pliant.surface.cells import Cells
 from pliant.surface.constraints import Constraints, constrain
-from pliant.surface.contour_skeletons import ContourSkeleton, contour_skeleton
+from pliant.surface.contour_skeletons import ContourSkeleton, known_skeleton
 from pliant.surface.editing import SurfaceDeformer
 from pliant.surface.skeleton_binding import RigidSkeletonBinding, SkeletonBinding, SmoothDisplacements
 from pliant.surface.skeleton_motion import Band, SkeletonMotion, parents_of
@@ -80,7 +80,7 @@ class SkeletonEdit(SurfaceDeformer):
         mesh = self._mesh(target)
         weights = cotangent_weights(mesh.points, mesh.triangles)
         constraints = constrain(mesh, np.asarray(self.roi), np.asarray(self.handle), weights)
-        skeleton = contour_skeleton(mesh, self.contours, self.scalar, eigenvectors=self.eigenvectors)
+        skeleton = known_skeleton(mesh, self.contours, self.scalar, self.eigenvectors)
         along = _along(mesh, constraints)
         moving = np.flatnonzero(_inside(constraints, len(along)) & np.isfinite(along) & (skeleton.groups >= 0))
         motion = self._motion(mesh, skeleton, constraints, moving, along)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from pliant.mesh import Points
 from pliant.studio.serving.frames import Frame
-from pliant.surface.contour_skeletons import ContourSkeleton, contour_skeleton
+from pliant.surface.contour_skeletons import ContourSkeleton, known_skeleton
 
 if TYPE_CHECKING:
     from pliant.studio.session import Session
@@ -39,7 +39,7 @@ def show_skeleton(session: Session, contours: int, eigenvectors: int) -> bool:
             session.beside[_KEY] = ShownSkeleton(contours, eigenvectors, found)
             session.broadcast(skeleton_frame(session))
 
-    session.jobs.run("Skeleton", lambda _: contour_skeleton(mesh, contours, eigenvectors=eigenvectors), done)
+    session.jobs.run("Skeleton", lambda _: known_skeleton(mesh, contours, None, eigenvectors), done)
     return False
 
 

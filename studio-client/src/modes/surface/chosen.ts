@@ -5,6 +5,7 @@ import type { Studio } from "../../studio";
 import type { Layer } from "../../transport/protocol";
 import { IN_HANDLE } from "../../view/marks";
 import type { Picked } from "./picking";
+import { RegionEdge } from "./region_edge";
 import { Region, type Merge, type Part } from "./region";
 import type { Method, SurfaceToolbar } from "./tools";
 
@@ -17,6 +18,7 @@ export class Chosen {
   /** While somebody drags, what is picked stays. */
   busy: () => boolean = () => false;
   private asked: string | null = null;
+  private readonly edge = new RegionEdge();
 
   constructor(
     private readonly studio: Studio,
@@ -39,6 +41,11 @@ export class Chosen {
     const sum = new Vector3();
     for (const vertex of handle) sum.add(this.at(vertex));
     return sum.divideScalar(handle.length);
+  }
+
+  /** What a limb swings about: the middle of the region's fixed edge; of the handle where there is none. */
+  get joint(): Vector3 | null {
+    return this.edge.middle(this.region, this.studio.mesh) ?? this.pivot;
   }
 
   get box(): Box3 | null {

@@ -58,7 +58,9 @@ export class HandleDrag {
   }
 
   place(): void {
-    const at = this.tools.mover ? this.chosen.pivot : null;
+    const { mover, now } = this.tools;
+    const swings = now.method === "skeleton" && mover !== "translate"; // the handle's own turns mean nothing to it
+    const at = mover && (swings ? this.chosen.joint : this.chosen.pivot);
     for (const gizmo of this.gizmos) {
       gizmo.useCamera();
       gizmo.place(at);

@@ -67,6 +67,7 @@ export class SurfaceMode implements Mode {
     converged: () => this.convergence.converged,
     energies: () => [...this.convergence.energies],
     pivot: () => this.onPage(this.chosen.pivot),
+    joint: () => this.onPage(this.chosen.joint),
     node: (index: number) => this.nodeOnPage(index),
     nodes: () => [...this.skeleton.points],
     groups: () => [...this.skeleton.groups],
@@ -173,6 +174,7 @@ export class SurfaceMode implements Mode {
     if (method === this.tools.now.method) return;
     this.tools.change({ method });
     this.convergence.begin();
+    if (method === "skeleton") this.skeleton.prepare();
     if (this.handle.active) this.handle.send();
     else if (this.chosen.own !== null) void this.studio.ask("surface.method", { layer: this.chosen.own, method });
   }

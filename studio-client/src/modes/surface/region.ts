@@ -7,6 +7,8 @@ export type Merge = "only" | "add" | "remove";
 
 export class Region {
   marks: Uint8Array;
+  /** How often it has changed. */
+  version = 0;
 
   constructor(count: number) {
     this.marks = new Uint8Array(count);
@@ -37,6 +39,7 @@ export class Region {
   /** Take vertices into a part, or out of it; what leaves the region leaves the handle, and a handle brings its region. */
   take(part: Part, indices: Iterable<number>, how: Merge): void {
     const { marks } = this;
+    this.version++;
     if (how === "only") this.clear(part);
     if (how === "remove") {
       const kept = part === "region" ? 0 : IN_REGION;
@@ -50,6 +53,7 @@ export class Region {
 
   clear(part: Part): void {
     const lost = part === "region" ? IN_REGION : IN_HANDLE;
+    this.version++;
     for (let i = 0; i < this.marks.length; i++) this.marks[i]! &= ~lost;
   }
 

@@ -57,6 +57,12 @@ export class SkeletonShow {
     if (answer?.head["known"]) this.take(answer);
   }
 
+  /** Let the server know it before it is needed: beside other work, and with progress. */
+  prepare(): void {
+    const { where, contours, eigenvectors } = this.choice;
+    if (where === "off") void this.studio.ask("surface.skeleton", { contours, eigenvectors });
+  }
+
   take({ arrays }: Frame): void {
     this.points = arrays["points"] as Float64Array<ArrayBuffer>;
     this.links = arrays["links"] as Uint32Array<ArrayBuffer>;
