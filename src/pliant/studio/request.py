@@ -106,16 +106,35 @@ class Request:
         return value
 
 
-Command = Callable[["Session", Request], Frame | None]
+@dataclass(frozen=True)
+class Later:
+    """An edit that takes long to compute.
+
+    Parameters
+    ----------
+    work
+        What is computed beside the session, of what cannot change, while others go on.
+    done
+        Gets its result on the session's thread, and gives the answer.
+    """
+
+    work: Callable[[], Any]
+    done: Callable[[Any], Frame | None]
+
+
+Command = Callable[["Session", Request], Frame | Later | None]
 
 COMMANDS: dict[str, Command] = {}
+READING: set[str] = set()  # commands that change nothing: they are given the session as it stands, and wait for none
 
 
-def command(name: str) -> Callable[[Command], Command]:
+def command(name: str, reads: bool = False) -> Callable[[Command], Command]:
     """Register a function as a command of this name."""
 
     def register(function: Command) -> Command:
         COMMANDS[name] = function
+        if reads:
+            READING.add(name)
         return function
 
     return register

@@ -1,22 +1,22 @@
 """The session: one scene with its history, and the pages that look at it.
 
-Everything runs on one thread, a command at a time, so that nothing has to be locked: a command is a small function of
-the registry. A drag is begin, previews, commit: one entry of the history. What a drag touches goes to the page that
-drags in the answer, to the others as an event.
+All that changes it runs on one thread, a command at a time, so that nothing has to be locked: a command is a small
+function of the registry. A drag is begin, previews, commit: one entry of the history. What a drag touches goes to the
+page that drags in the answer, to the others as an event.
 """
 
 from __future__ import annotations
 
-import warnings
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from copy import copy
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from pliant.errors import InvalidParameter, PliantError, PliantWarning
+from pliant.errors import InvalidParameter
 from pliant.scene.pictures import pictures_folder
 from pliant.scene.scene import Scene
 from pliant.studio.autosave import Autosave
@@ -25,12 +25,15 @@ from pliant.studio.examples.samples import samples_folder
 from pliant.studio.history import Entry, History
 from pliant.studio.jobs import Jobs
 from pliant.studio.modes.posing import keyed, within
-from pliant.studio.request import COMMANDS, Client, Request
+from pliant.studio.request import Client
 from pliant.studio.seen.catalogue import catalogue
 from pliant.studio.seen.stage import Stage
 from pliant.studio.seen.state import scene_state
+from pliant.studio.serving.answering import Answer
 from pliant.studio.serving.files import Uploads
-from pliant.studio.serving.frames import Frame, MalformedFrame
+from pliant.studio.serving.frames import Frame
+
+_READERS = 4  # commands that are answered beside the session at once
 
 
 class Session:
@@ -64,6 +67,7 @@ class Session:
         self.clients: list[Client] = []
         self.jobs = Jobs(self)
         self.worker = ThreadPoolExecutor(1, "pliant-studio")
+        self.readers = ThreadPoolExecutor(_READERS, "pliant-studio-reader")
         self.worker.submit(_one_blas_thread)
         if scene is not None:
             self.begin(scene, name)
@@ -110,37 +114,28 @@ class Session:
             self.drop_drag()
 
     def handle(self, client: Client, data: bytes) -> None:
-        """Run the command of a frame, and answer it.
+        """Run the command of a frame, and answer it: all its steps on this thread.
 
         Raises
         ------
         MalformedFrame
             The bytes are no command.
         """
-        frame = Frame.decode(data)
-        known, name, values = frame.head.get("id"), frame.head.get("do"), frame.head.get("with", {})
-        if not isinstance(known, int) or not isinstance(name, str) or not isinstance(values, dict):
-            raise MalformedFrame("a frame is no command: it needs an id, a name and values")
-        try:
-            if name not in COMMANDS:
-                raise InvalidParameter(f"the studio knows no command {name!r}")
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore", PliantWarning)
-                answer = COMMANDS[name](self, Request(client, values, frame.arrays)) or Frame()
-        except PliantError as error:
-            answer = Frame({"error": {"kind": type(error).__name__, "message": str(error)}})
-        except OSError as error:
-            answer = Frame({"error": {"kind": "OSError", "message": f"{error.filename or 'file'}: {error.strerror}"}})
-        except Exception as error:  # a bug must not end the session: the work in it would be lost
-            message = f"this is a bug in pliant: {type(error).__name__}: {error}"
-            answer = Frame({"error": {"kind": "Bug", "message": message}})
-        client.send(Frame({**answer.head, "answer": known}, answer.arrays).encode())
+        answer = Answer(self, client, data)
+        while answer.step is not None:
+            answer.step()
 
-    def begin(self, scene: Scene, name: str, key: str = "open") -> None:
-        """Show another scene, with a history of its own."""
+    def as_it_stands(self) -> Session:
+        """What a command that only reads is given, while others go on editing; nothing is being dragged in it."""
+        found = copy(self)
+        found.dragging, found.stage = None, copy(self.stage)
+        return found
+
+    def begin(self, scene: Scene | Stage, name: str, key: str = "open") -> None:
+        """Show another scene, with a history of its own; as a stage where it has been evaluated already."""
         self.drop_drag()
-        stage = Stage(scene)
-        self.history, self.stage = History(Entry(scene, key, name)), stage
+        stage = scene if isinstance(scene, Stage) else Stage(scene)
+        self.history, self.stage = History(Entry(stage.given, key, name)), stage
         self.name, self.locked, self.beside = name, {}, {}
         self.time, self.recording = 0.0, False
         self.revision += 1
@@ -234,6 +229,7 @@ class Session:
     def end(self) -> None:
         """Stop working; unsaved work stays where it is kept."""
         self.jobs.end()
+        self.readers.shutdown(wait=True, cancel_futures=True)
         self.worker.shutdown(wait=True, cancel_futures=True)
         if self.autosave is not None:
             self.autosave.finish()

@@ -27,7 +27,7 @@ MOST_VERTICES = 5000
 _KEPT = "cage-comparison"
 
 
-@command("cage.get")
+@command("cage.get", reads=True)
 def get(session: Session, request: Request) -> Frame:
     """The faces of a cage, and which coordinates there are."""
     cage = _cage(session.required.stack, request.text("layer"))
@@ -54,7 +54,7 @@ def build(session: Session, request: Request) -> None:
     session.jobs.run("Cage", work, done)
 
 
-@command("cage.sketch")
+@command("cage.sketch", reads=True)
 def show(session: Session, request: Request) -> Frame:
     """The rings around the planes so far."""
     shape = session.required.mesh.with_points(session.shown.binding.result)
@@ -63,7 +63,7 @@ def show(session: Session, request: Request) -> Frame:
     return Frame({"linked": found.linked, "message": found.message}, arrays)
 
 
-@command("cage.cut")
+@command("cage.cut", reads=True)
 def cut(session: Session, request: Request) -> Frame:
     """The plane of a line that was drawn across a limb."""
     shape = session.required.mesh.with_points(session.shown.binding.result)

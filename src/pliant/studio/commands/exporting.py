@@ -23,7 +23,7 @@ from pliant.studio.session import Session
 _CELLS = 16
 
 
-@command("export.mesh")
+@command("export.mesh", reads=True)
 def mesh(session: Session, request: Request) -> Frame:
     """The deformed mesh in a format."""
     suffix = request.text("suffix")
@@ -33,7 +33,7 @@ def mesh(session: Session, request: Request) -> Frame:
     return _handed_over(session, suffix, lambda path: meshes.write(shape, path))
 
 
-@command("export.transform")
+@command("export.transform", reads=True)
 def transform(session: Session, request: Request) -> Frame:
     """A layer's deformation, or that of all layers, in a format."""
     suffix, name = request.text("suffix"), request.text("layer", "")
@@ -45,7 +45,7 @@ def transform(session: Session, request: Request) -> Frame:
     return _handed_over(session, ending, lambda path: transforms.write_transform(deformer, path))
 
 
-@command("export.grid")
+@command("export.grid", reads=True)
 def grid(session: Session, request: Request) -> Frame:
     """The lines of a warped grid as VTK polydata."""
     low, high = _room(session.required.mesh.bounds)
@@ -53,7 +53,7 @@ def grid(session: Session, request: Request) -> Frame:
     return _handed_over(session, "-grid.vtp", found.save)
 
 
-@command("export.surface")
+@command("export.surface", reads=True)
 def surface(session: Session, request: Request) -> Frame:
     """The deformed surface with the displacement, and the measures of its map, at its vertices."""
     scene = session.required

@@ -16,7 +16,7 @@ from pliant.studio.session import Session
 MOST_CONTROLS = 20_000
 
 
-@command("extended.preview")
+@command("extended.preview", reads=True)
 def preview(session: Session, request: Request) -> Frame:
     """What the lattice would look like."""
     made = _made(session, request)

@@ -10,18 +10,19 @@ import numpy as np
 from pliant.errors import InvalidParameter
 from pliant.face.handles import FaceHandles
 from pliant.scene.layer import Layer
-from pliant.scene.scene import Scene
 from pliant.studio.commands.opening import enter
+from pliant.studio.jobs import Job
 from pliant.studio.modes.faces import example_photograph, face_layer, face_scene, looked_at, missing, photograph_of
 from pliant.studio.modes.layering import free_name
 from pliant.studio.request import Request, command
+from pliant.studio.seen.stage import Stage
 from pliant.studio.serving.frames import Frame
 from pliant.studio.session import Session
 
 HANDLES = "Handles"
 
 
-@command("face.ready")
+@command("face.ready", reads=True)
 def ready(session: Session, request: Request) -> Frame:
     """Whether photographs can be looked at, else what is missing; whether there is an example."""
     return Frame({"missing": missing(), "example": example_photograph() is not None})
@@ -53,7 +54,7 @@ def other(session: Session, request: Request) -> None:
     _look(session, path, request.integer("number"))
 
 
-@command("face.folds")
+@command("face.folds", reads=True)
 def folds(session: Session, request: Request) -> Frame:
     """Whether the caricature folds the face, and the amount at which it does not."""
     scene = session.required
@@ -87,12 +88,16 @@ def handles(session: Session, request: Request) -> Frame:
 
 
 def _look(session: Session, path: Path, number: int) -> None:
-    def done(found: tuple[Scene, int]) -> None:
-        scene, count = found
-        enter(session, scene, path.stem, "face")
+    def work(_: Job) -> tuple[Stage, int]:
+        scene, count = face_scene(path, number)
+        return Stage(scene), count
+
+    def done(found: tuple[Stage, int]) -> None:
+        stage, count = found
+        enter(session, stage, path.stem, "face")
         session.beside["photograph"] = (path, number, count)
 
-    session.jobs.run(path.name, lambda _: face_scene(path, number), done)
+    session.jobs.run(path.name, work, done)
 
 
 def _photograph(session: Session, request: Request) -> Path:

@@ -13,20 +13,20 @@ from pliant.studio.session import Session
 _MOST_TEXTURE = 64 << 20
 
 
-@command("mesh.edges")
+@command("mesh.edges", reads=True)
 def edges(session: Session, request: Request) -> Frame:
     """Edges of the polygons."""
     return Frame({}, {"edges": session.shown.drawn.edges})
 
 
-@command("mesh.rest")
+@command("mesh.rest", reads=True)
 def rest(session: Session, request: Request) -> Frame:
     """Positions and normals before the deformation."""
     drawn, points = session.shown.drawn, session.required.mesh.points
     return Frame({}, {"positions": points.astype(np.float32), "normals": drawn.normals(points)})
 
 
-@command("mesh.texture")
+@command("mesh.texture", reads=True)
 def texture(session: Session, request: Request) -> Frame:
     """The picture file of a material, by its number."""
     mesh, number = session.required.mesh, request.integer("id")

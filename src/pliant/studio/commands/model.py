@@ -49,7 +49,7 @@ def build(session: Session, request: Request) -> None:
     session.jobs.run(NAME, lambda _: built(scene.mesh, kernel, rank, way), done)
 
 
-@command("model.get")
+@command("model.get", reads=True)
 def get(session: Session, request: Request) -> Frame:
     """What a page needs of a model to move it."""
     stack, name = session.required.stack, request.text("layer")
@@ -127,7 +127,7 @@ def noise(session: Session, request: Request) -> None:
     _commit(session, request, replace(shape, noise=request.number("noise")), "noise")
 
 
-@command("model.uncertainty")
+@command("model.uncertainty", reads=True)
 def uncertainty(session: Session, request: Request) -> Frame:
     """How far each vertex strays, given the landmarks; the colours end where it strays most without them."""
     shape = model_layer(session.required.stack, request.text("layer"))
@@ -161,7 +161,7 @@ def fit(session: Session, request: Request) -> None:
     session.jobs.run(layer, work.work, work.done)
 
 
-@command("model.field")
+@command("model.field", reads=True)
 def field(session: Session, request: Request) -> Frame:
     """Arrows of a random field: displacements of points of the surface, drawn from a Gaussian process."""
     count = min(max(request.integer("count", 300), 1), _MOST_ARROWS)

@@ -17,7 +17,8 @@ from pliant.studio.examples.sample_scenes import SCENES
 from pliant.studio.examples.samples import sample
 from pliant.studio.modes.faces import photograph_of
 from pliant.studio.modes.shape_models import model_scene
-from pliant.studio.request import Request, command
+from pliant.studio.request import Later, Request, command
+from pliant.studio.seen.stage import Stage
 from pliant.studio.serving.files import CHUNK, inside
 from pliant.studio.serving.frames import Frame
 from pliant.studio.session import Session
@@ -43,7 +44,7 @@ def chunk(session: Session, request: Request) -> None:
 
 
 @command("open.upload")
-def open_upload(session: Session, request: Request) -> Frame:
+def open_upload(session: Session, request: Request) -> Frame | Later:
     """A mesh, a model or a project of uploaded files; transforms and photographs are left for the page to ask about."""
     found = session.uploads.get(request.text("upload"))
     if not found.complete:
@@ -60,7 +61,7 @@ def open_upload(session: Session, request: Request) -> Frame:
 
 
 @command("open.path")
-def open_path(session: Session, request: Request) -> Frame:
+def open_path(session: Session, request: Request) -> Later:
     """A mesh or a project of the studio's folder."""
     path = inside(session.root, request.text("path"))
     if session.autosave is not None:
@@ -69,28 +70,32 @@ def open_path(session: Session, request: Request) -> Frame:
 
 
 @command("open.example")
-def open_example(session: Session, request: Request) -> None:
+def open_example(session: Session, request: Request) -> Later | None:
     """A shape or a scene of the start page."""
     name = request.text("name")
     if name not in SCENES:
-        session.begin(Scene(sample(name)), name.capitalize())
-        return
+        return Later(lambda: Stage(Scene(sample(name))), lambda stage: session.begin(stage, name.capitalize()))
     found = SCENES[name]
-    session.jobs.run(found.title, lambda _: found.make(), lambda scene: enter(session, scene, found.title, found.mode))
+    work = lambda _: Stage(found.make())  # noqa: E731
+    session.jobs.run(found.title, work, lambda stage: enter(session, stage, found.title, found.mode))
+    return None
 
 
 @command("open.recover")
-def recover(session: Session, request: Request) -> None:
+def recover(session: Session, request: Request) -> Later:
     """Work that was not saved before its studio ended."""
-    if session.autosave is None:
+    autosave, name = session.autosave, request.text("name")
+    if autosave is None:
         raise InvalidParameter("this studio keeps no unsaved work")
-    name = request.text("name")
-    scene = load_project(session.autosave.place(name))
-    session.begin(scene, "Recovered", "recover")
-    session.saved = -1
-    session.autosave.keep(scene, "Recovered")
-    session.autosave.recovered(name)
-    session.tell_scene()
+
+    def done(stage: Stage) -> None:
+        session.begin(stage, "Recovered", "recover")
+        session.saved = -1
+        autosave.keep(stage.given, "Recovered")
+        autosave.recovered(name)
+        session.tell_scene()
+
+    return Later(lambda: Stage(load_project(autosave.place(name))), done)
 
 
 @command("scene.close")
@@ -100,20 +105,27 @@ def close(session: Session, request: Request) -> None:
 
 
 @command("project.save")
-def save(session: Session, request: Request) -> Frame:
+def save(session: Session, request: Request) -> Later:
     """The scene as a project file, for the page to hand over."""
-    name = f"{session.name or 'scene'}{PROJECT}"
-    with tempfile.TemporaryDirectory(prefix="pliant-save-") as folder:
-        save_project(session.required, Path(folder) / name)
-        data = read_bytes(Path(folder) / name)
-    session.saved = session.revision
-    if session.autosave is not None:
-        session.autosave.forget()
-    session.tell_scene()
-    return Frame({"name": name}, {"file": np.frombuffer(data, np.uint8)})
+    scene, revision, name = session.required, session.revision, f"{session.name or 'scene'}{PROJECT}"
+
+    def work() -> bytes:
+        with tempfile.TemporaryDirectory(prefix="pliant-save-") as folder:
+            save_project(scene, Path(folder) / name)
+            return read_bytes(Path(folder) / name)
+
+    def done(data: bytes) -> Frame:
+        if session.revision == revision:  # else there is something unsaved again
+            session.saved = revision
+            if session.autosave is not None:
+                session.autosave.forget()
+        session.tell_scene()
+        return Frame({"name": name}, {"file": np.frombuffer(data, np.uint8)})
+
+    return Later(work, done)
 
 
-@command("folder.list")
+@command("folder.list", reads=True)
 def listing(session: Session, request: Request) -> Frame:
     """Folders, and files that can be opened, of a folder below the studio's."""
     folder = inside(session.root, request.text("folder", ""))
@@ -126,9 +138,9 @@ def listing(session: Session, request: Request) -> Frame:
     return Frame({"folders": folders, "files": files[:_MOST_ENTRIES]})
 
 
-def enter(session: Session, scene: Scene, name: str, mode: str) -> None:
+def enter(session: Session, stage: Stage, name: str, mode: str) -> None:
     """Show a scene in the mode that it is for; empty = in the one that each page is in."""
-    session.begin(scene, name)
+    session.begin(stage, name)
     if mode:
         session.broadcast(Frame({"event": "enter", "mode": mode}))
 
@@ -173,9 +185,16 @@ def main_file(paths: list[Path]) -> Path:
     raise InvalidParameter(f"{names}: neither a mesh, a model, a project, a deformation nor a photograph")
 
 
-def _open(session: Session, path: Path, name: str) -> Frame:
-    enter(session, read_scene(path), name, "model" if holds_model(path) else "")
-    return Frame({"notes": []})
+def _open(session: Session, path: Path, name: str) -> Later:
+    def work() -> tuple[Stage, str]:
+        return Stage(read_scene(path)), "model" if holds_model(path) else ""
+
+    def done(found: tuple[Stage, str]) -> Frame:
+        stage, mode = found
+        enter(session, stage, name, mode)
+        return Frame({"notes": []})
+
+    return Later(work, done)
 
 
 def holds_model(path: Path) -> bool:

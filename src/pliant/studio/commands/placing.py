@@ -53,7 +53,7 @@ class Placing(Dragging):
         return scene.replace(clip=clip)
 
 
-@command("place.get")
+@command("place.get", reads=True)
 def get(session: Session, request: Request) -> Frame:
     """Where a layer stands, and the way that it takes through the clip."""
     scene = session.required

@@ -17,7 +17,7 @@ from pliant.studio.serving.frames import Frame
 from pliant.studio.session import Session
 
 
-@command("points.get")
+@command("points.get", reads=True)
 def get(session: Session, request: Request) -> Frame:
     """Where the control points of a layer rest and are, which are neighbours, which are locked."""
     name = request.text("layer")
@@ -35,7 +35,7 @@ def get(session: Session, request: Request) -> Frame:
     return Frame({}, arrays)
 
 
-@command("points.influence")
+@command("points.influence", reads=True)
 def influence(session: Session, request: Request) -> Frame:
     """How much of the control points' common move each point of the shape makes, from 0 to 1."""
     name = request.text("layer")

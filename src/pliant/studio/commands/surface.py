@@ -22,20 +22,20 @@ from pliant.surface.screen import SeenMesh
 _MOST_CONTOURS, _MOST_EIGENVECTORS = 300, 60
 
 
-@command("surface.within")
+@command("surface.within", reads=True)
 def within(session: Session, request: Request) -> Frame:
     """The vertices inside an outline on the screen."""
     return _indices(_seen(session, request).inside(_places(request, "outline"), visible=request.truth("visible")))
 
 
-@command("surface.brush")
+@command("surface.brush", reads=True)
 def brush(session: Session, request: Request) -> Frame:
     """The vertices under a stroke."""
     seen, size = _seen(session, request), (request.number("wide"), request.number("high"))
     return _indices(seen.under(_places(request, "path"), size, visible=request.truth("visible")))
 
 
-@command("surface.distances")
+@command("surface.distances", reads=True)
 def distances(session: Session, request: Request) -> Frame:
     """How far each vertex is, along the shape as it is, from some: the page draws the line."""
     stage = session.shown
@@ -46,14 +46,14 @@ def distances(session: Session, request: Request) -> Frame:
     return Frame({}, {"distances": np.where(np.isfinite(found), found, 1e30).astype(np.float32)})
 
 
-@command("surface.grow")
+@command("surface.grow", reads=True)
 def grow(session: Session, request: Request) -> Frame:
     """A region with so many rings of neighbours more; fewer than none shrinks it."""
     mesh = session.required.mesh
     return _indices(regions.grow(mesh, request.indices("index", len(mesh.points)), request.integer("rings")))
 
 
-@command("surface.part")
+@command("surface.part", reads=True)
 def part(session: Session, request: Request) -> Frame:
     """The vertices of a part that has a name."""
     return _indices(vertices_of(session.required, request.text("part")))
@@ -81,7 +81,7 @@ def forget(session: Session, request: Request) -> None:
     session.commit(scene.replace(selections=left), "deselect", name)
 
 
-@command("surface.region")
+@command("surface.region", reads=True)
 def region(session: Session, request: Request) -> Frame:
     """Region, handle and method of a layer that edits the surface."""
     deformer = edit_of(session.required.stack, request.text("layer"))

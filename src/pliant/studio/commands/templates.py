@@ -20,7 +20,7 @@ _SMALL = "small mesh"
 _STRONGEST = 4.0
 
 
-@command("templates.list")
+@command("templates.list", reads=True)
 def listing(session: Session, request: Request) -> Frame:
     """All templates: what they are called, what they do, how long they last."""
     folder = user_folder()
@@ -39,7 +39,7 @@ def listing(session: Session, request: Request) -> Frame:
     return Frame({"templates": found})
 
 
-@command("templates.preview")
+@command("templates.preview", reads=True)
 def show(session: Session, request: Request) -> Frame:
     """Some moments of a template on a mesh of few vertices, which is the scene's."""
     small = _small(session)

@@ -65,7 +65,7 @@ def goto(session: Session, request: Request) -> None:
     session.go_to(_time(session, request))
 
 
-@command("time.frame")
+@command("time.frame", reads=True)
 def frame(session: Session, request: Request) -> Frame:
     """The shape at a time, which is not kept: while somebody scrubs or plays."""
     stage, time = session.shown, _time(session, request)

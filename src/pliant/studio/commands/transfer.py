@@ -171,7 +171,7 @@ command("transfer.commit")(commit)
 command("transfer.cancel")(cancel)
 
 
-@command("transfer.export")
+@command("transfer.export", reads=True)
 def export(session: Session, request: Request) -> Frame:
     """The scene's shape in each pose of a layer, a file each."""
     scene, suffix, name = session.required, request.text("suffix"), request.text("layer")

@@ -20,7 +20,7 @@ from pliant.studio.serving.frames import Frame
 from pliant.studio.session import Session
 
 
-@command("transform.preview")
+@command("transform.preview", reads=True)
 def preview(session: Session, request: Request) -> Frame:
     """What a file holds, under the choices made so far, and what it would do to the mesh."""
     found, told = _read(session, request)

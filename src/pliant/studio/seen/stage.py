@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pliant.deformer import Controls
-from pliant.errors import PliantError
 from pliant.mesh import Points
 from pliant.scene.clip import intensified
 from pliant.scene.scene import Scene
@@ -30,25 +29,27 @@ class Stage:
         The scene; from then on as it stands at the time shown.
     time
         In seconds.
+
+    Attributes
+    ----------
+    given, scene
+        The scene as it was given, and as it stands at the time shown.
     """
 
     _on_motion = False
 
     def __init__(self, scene: Scene, time: float = 0.0) -> None:
         self.id = next(_numbers)
-        self.scene = posed(scene, time)
+        self.given, self.scene = scene, posed(scene, time)
         self.drawn = DrawnMesh(scene.mesh)
-        self.binding = self._bound(None, time)
+        self.binding = self._bound(self.scene, None, time)
         self.told: Points = np.array(self.points)
 
     def show(self, scene: Scene, time: float = 0.0) -> None:
         """Evaluate another stack, or another time, on the same mesh."""
-        before, self.scene = self.scene, posed(scene, time)
-        try:
-            self.binding = self._bound(self.binding, time)
-        except PliantError:
-            self.scene = before
-            raise
+        shown = posed(scene, time)
+        binding = self._bound(shown, self.binding, time)
+        vars(self).update(given=scene, scene=shown, binding=binding)  # at once: readers copy them together
 
     @property
     def points(self) -> Points:
@@ -63,9 +64,9 @@ class Stage:
             return self.points
         return intensified(self.binding.updated(clip.stack_at(time), clip.base_at(time)), clip.intensity)
 
-    def _bound(self, binding: StackBinding | None, time: float) -> StackBinding:
+    def _bound(self, scene: Scene, binding: StackBinding | None, time: float) -> StackBinding:
         """The posed stack, evaluated: with what is known of the binding before, where that stood on the same ground."""
-        scene, clip = self.scene, self.scene.clip
+        clip = scene.clip
         base = None if clip is None else clip.base_at(time)
         if binding is None or (base is None and self._on_motion):
             binding = scene.stack.bind(scene.mesh)

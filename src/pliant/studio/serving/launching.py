@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import socket
+import sys
 import webbrowser
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from pliant.studio.session import Session
 
 USUAL_PORT = 8477
+_SWITCH = 1e-3  # seconds that a thread may hold the interpreter while others wait: there are answers among them
 
 
 class PortInUse(PliantError):
@@ -48,6 +50,7 @@ class Launch:
 
     def run(self) -> None:
         """Serve until interrupted."""
+        sys.setswitchinterval(_SWITCH)
         try:
             self._server.run(sockets=[self._socket])
         finally:

@@ -1,9 +1,10 @@
-"""The server: a page, its files, and one WebSocket a page, whose frames go to the session's thread."""
+"""The server: a page, its files, and one WebSocket a page, whose frames go to the session."""
 
 from __future__ import annotations
 
 import asyncio
 import time
+from concurrent.futures import Executor
 from pathlib import Path
 from typing import Any
 from urllib.parse import urlencode
@@ -16,6 +17,7 @@ from starlette.staticfiles import StaticFiles
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from pliant.errors import PliantError
+from pliant.studio.serving.answering import SMALL, Answer
 from pliant.studio.serving.frames import MalformedFrame
 from pliant.studio.serving.guard import Guard, Secret
 from pliant.studio.session import Session
@@ -120,9 +122,19 @@ class Page:
             try:
                 if data is None:
                     raise MalformedFrame("frames are bytes")
-                await self._on_session(self._session.handle, self, data)
+                await self._answer(data)
             except MalformedFrame as error:
                 await self._socket.close(_MALFORMED, str(error)[:100])
+                return
+
+    async def _answer(self, data: bytes) -> None:
+        """Step by step, each where it belongs: what is small is decoded here."""
+        answer = Answer(self._session, self, data)
+        if len(data) <= SMALL and answer.step is not None:
+            answer.step()
+        while answer.step is not None:
+            pool = self._session.readers if answer.beside else self._session.worker
+            if not await self._on(pool, answer.step):
                 return
 
     async def _deliver(self) -> None:
@@ -138,10 +150,15 @@ class Page:
         self._outgoing.put_nowait(data)
 
     async def _on_session(self, work: Any, *arguments: Any) -> None:
+        await self._on(self._session.worker, work, *arguments)
+
+    async def _on(self, pool: Executor, work: Any, *arguments: Any) -> bool:
+        """Whether it was done: not where the session has ended."""
         try:
-            await self._loop.run_in_executor(self._session.worker, work, *arguments)
-        except RuntimeError:  # the session has ended
-            return
+            await self._loop.run_in_executor(pool, work, *arguments)
+        except RuntimeError:
+            return False
+        return True
 
 
 class Allowance:
