@@ -10,10 +10,15 @@ from typing import Any
 
 import numba
 
-_FUSED = {"contract", "reassoc"}
+_OPTIONS: dict[str, Any] = {
+    "nogil": True,
+    "fastmath": {"contract", "reassoc"},
+    "error_model": "numpy",  # no kernel divides by zero: nothing asks before each division
+    "no_cfunc_wrapper": True,
+}
 
-inlined: Callable[[Callable[..., Any]], Any] = numba.njit(nogil=True, fastmath=_FUSED, forceinline=True)
-"""A piece of kernels."""
+inlined: Callable[[Callable[..., Any]], Any] = numba.njit(forceinline=True, no_cpython_wrapper=True, **_OPTIONS)
+"""A piece of kernels; Python cannot call it."""
 
 
 def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
@@ -21,7 +26,7 @@ def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
 
     Where compiling takes longer than a second, a line on the terminal says so.
     """
-    compiled = numba.njit(nogil=True, cache=True, fastmath=_FUSED)(function)
+    compiled = numba.njit(cache=True, **_OPTIONS)(function)
 
     @functools.wraps(function)
     def call(*arguments: Any) -> Any:

@@ -13,6 +13,7 @@ from typing import Any
 from llvmlite import ir
 from numba import types
 from numba.core import cgutils
+from numba.core.errors import TypingError
 from numba.core.typing.templates import AbstractTemplate, infer_global, signature
 from numba.extending import intrinsic, lower_builtin, models, register_model
 
@@ -190,12 +191,59 @@ def root(_typing: Any, value: Any) -> Any:
 
 
 @intrinsic
+def cubic(_typing: Any, array: Any, at: Any, step: Any, t: Any) -> Any:
+    """A cubic polynomial by Horner's rule; its coefficients, lowest power first, stand ``step`` elements apart."""
+
+    def generate(context: Any, builder: Any, _signature: Any, args: Any) -> Any:
+        constant, linear, square, cube = _four(context, builder, array, *args[:3])
+        value = cube
+        for coefficient in (square, linear, constant):
+            value = builder.fadd(builder.fmul(value, args[3], flags=_FUSED), coefficient, flags=_FUSED)
+        return value
+
+    return lanes(array, types.intp, types.intp, lanes), generate
+
+
+@intrinsic
+def affine(_typing: Any, array: Any, row: Any, x: Any, y: Any, z: Any) -> Any:
+    """One coordinate of eight points after an affine map: a row of a C-ordered matrix (rows, 4) times (x, y, z, 1)."""
+
+    def generate(context: Any, builder: Any, _signature: Any, args: Any) -> Any:
+        integer = args[1].type
+        row = _four(context, builder, array, args[0], builder.mul(args[1], integer(4)), integer(1))
+        return builder.fadd(_weighted(builder, args[2:], row), row[3], flags=_FUSED)
+
+    return lanes(array, types.intp, lanes, lanes, lanes), generate
+
+
+@intrinsic
+def weighted(_typing: Any, array: Any, at: Any, step: Any, a: Any, b: Any, c: Any, d: Any) -> Any:
+    """The sum of four lanes, each times a number; the numbers stand ``step`` elements apart."""
+
+    def generate(context: Any, builder: Any, _signature: Any, args: Any) -> Any:
+        return _weighted(builder, args[3:], _four(context, builder, array, *args[:3]))
+
+    return lanes(array, types.intp, types.intp, lanes, lanes, lanes, lanes), generate
+
+
+@intrinsic
+def clear(_typing: Any, array: Any, start: Any, stop: Any) -> Any:
+    """Zero the elements from ``start`` to ``stop`` of a C-ordered array."""
+
+    def generate(context: Any, builder: Any, _signature: Any, args: Any) -> Any:
+        length = builder.mul(builder.sub(args[2], args[1]), args[1].type(array.dtype.bitwidth // 8))
+        cgutils.memset(builder, _element(context, builder, array, *args[:2]), length, 0)
+        return context.get_dummy_value()
+
+    return types.void(array, types.intp, types.intp), generate
+
+
+@intrinsic
 def get(_typing: Any, array: Any, index: Any) -> Any:
     """One element of a C-ordered 1-D array, without Python's negative indices: they cost a branch a load."""
 
     def generate(context: Any, builder: Any, _signature: Any, args: Any) -> Any:
-        data = context.make_array(array)(context, builder, value=args[0]).data
-        return builder.load(cgutils.gep(builder, data, args[1]))
+        return builder.load(_element(context, builder, array, *args))
 
     return array.dtype(array, types.intp), generate
 
@@ -205,8 +253,7 @@ def put(_typing: Any, array: Any, index: Any, value: Any) -> Any:
     """Write one element of a C-ordered 1-D float64 array."""
 
     def generate(context: Any, builder: Any, _signature: Any, args: Any) -> Any:
-        data = context.make_array(array)(context, builder, value=args[0]).data
-        builder.store(args[2], cgutils.gep(builder, data, args[1]))
+        builder.store(args[2], _element(context, builder, array, *args[:2]))
         return context.get_dummy_value()
 
     return types.void(array, types.intp, types.float64), generate
@@ -275,8 +322,28 @@ def _sum_of_halves(builder: Any, vector: Any, width: int) -> Any:
 
 
 def _address(context: Any, builder: Any, array_type: Any, array: Any, index: Any) -> Any:
-    data = context.make_array(array_type)(context, builder, value=array).data
-    return builder.bitcast(cgutils.gep(builder, data, index), _VECTOR.as_pointer())
+    return builder.bitcast(_element(context, builder, array_type, array, index), _VECTOR.as_pointer())
+
+
+def _four(context: Any, builder: Any, array_type: Any, array: Any, at: Any, step: Any) -> list[Any]:
+    """Four numbers of an array, ``step`` elements apart, each spread over all lanes."""
+    places = [builder.add(at, builder.mul(step, at.type(place))) for place in range(4)]
+    return [_spread(builder, builder.load(_element(context, builder, array_type, array, place))) for place in places]
+
+
+def _weighted(builder: Any, values: Any, factors: Any) -> Any:
+    total, *rest = (builder.fmul(value, factor, flags=_FUSED) for value, factor in zip(values, factors, strict=False))
+    for product in rest:
+        total = builder.fadd(total, product, flags=_FUSED)
+    return total
+
+
+def _element(context: Any, builder: Any, array_type: Any, array: Any, index: Any) -> Any:
+    """Where an element is, by two instructions: what numba lays out for an array takes twenty, to be optimised away."""
+    if array_type.layout != "C":
+        raise TypingError(f"elements are counted in C order, and {array_type} is not in it")
+    data = builder.extract_value(array, context.data_model_manager[array_type].get_field_position("data"))
+    return builder.gep(data, [index])
 
 
 def _gather(builder: Any, parts: Any, picks: list[int]) -> Any:

@@ -5,12 +5,26 @@ from __future__ import annotations
 import numpy as np
 
 from pliant.numerics.compute.compiling import inlined, kernel
-from pliant.numerics.compute.lanes import get, load, load_triples, put, spread, store, store_triples, where_between
+from pliant.numerics.compute.lanes import (
+    affine,
+    clear,
+    get,
+    load,
+    load_triples,
+    put,
+    spread,
+    store,
+    store_triples,
+    where_between,
+)
 
 
 @inlined
-def _fill(table, at, binomials, t):
-    """Bernstein polynomials of eight parameters, basis function i at ``table[at + 16 * i]``."""
+def _fill(table, at, binomials, t, keep, axis, inside):
+    """Bernstein polynomials of eight parameters, basis function i at ``table[at + 16 * i]``.
+
+    Gives ``inside`` in the lanes that are within the bounds of the axis, 0 in the others.
+    """
     degree = len(binomials) - 1
     power = spread(1.0)
     for i in range(degree + 1):
@@ -20,6 +34,7 @@ def _fill(table, at, binomials, t):
     for i in range(degree, -1, -1):
         store(table, at + 16 * i, load(table, at + 16 * i) * power)
         power = power * (1.0 - t)
+    return where_between(t, keep[0, axis], keep[1, axis], inside, 0.0)
 
 
 @kernel
@@ -30,19 +45,17 @@ def evaluate(points, start, stop, frame, keep, across, down, along, lattice, bas
     of the three degrees; ``lattice`` the control values, flat, of shape (l + 1, m + 1, n + 1, 3).
     """
     xs, ys, zs = np.empty(16 * len(across)), np.empty(16 * len(down)), np.empty(16 * len(along))
-    block, moved, inside = np.zeros(48), np.empty(48), np.empty(16)
+    block, moved, inside = np.empty(48), np.empty(48), np.empty(16)
+    clear(block, 0, 48)
     for first in range(start, stop, 16):
         count = min(16, stop - first)
         for n in range(3 * count):
             put(block, n, get(points, 3 * first + n))
         for half in range(2):
             x, y, z = load_triples(block, 24 * half)
-            store(inside, 8 * half, spread(1.0))
-            for axis, (table, binomials) in enumerate(((xs, across), (ys, down), (zs, along))):
-                t = x * frame[axis, 0] + y * frame[axis, 1] + z * frame[axis, 2] + frame[axis, 3]
-                _fill(table, 8 * half, binomials, t)
-                here = load(inside, 8 * half)
-                store(inside, 8 * half, where_between(t, keep[0, axis], keep[1, axis], here, 0.0))
+            within = _fill(xs, 8 * half, across, affine(frame, 0, x, y, z), keep, 0, spread(1.0))
+            within = _fill(ys, 8 * half, down, affine(frame, 1, x, y, z), keep, 1, within)
+            store(inside, 8 * half, _fill(zs, 8 * half, along, affine(frame, 2, x, y, z), keep, 2, within))
         x0, y0, z0, x1, y1, z1 = spread(0.0), spread(0.0), spread(0.0), spread(0.0), spread(0.0), spread(0.0)
         at = 0
         for i in range(len(across)):

@@ -26,7 +26,10 @@ import numpy as np
 from pliant.numerics.compute.compiling import inlined, kernel
 from pliant.numerics.compute.lanes import (
     add_triple,
+    affine,
     clamp,
+    clear,
+    cubic,
     get,
     load,
     load_triples,
@@ -35,6 +38,7 @@ from pliant.numerics.compute.lanes import (
     store,
     store_triples,
     total,
+    weighted,
     where_between,
     whole,
 )
@@ -52,15 +56,16 @@ def locate(points, first, stop, frame, limits, keep, grid, order, places, local,
     cell_of = np.empty(count + 8)
     q = np.empty(3 * (count + 8))
     piece = np.empty(24)
-    starts[:] = 0
-    tail = np.zeros(24)  # the last eight points may be fewer: they are read from a copy
+    clear(starts, 0, cells + 2)
+    tail = np.empty(24)  # the last eight points may be fewer: they are read from a copy
+    clear(tail, 0, 24)
     for n in range(3 * (count // 8 * 8), 3 * count):
         put(tail, n - 3 * (count // 8 * 8), get(points, 3 * first + n))
     for n in range(0, count, 8):
         x, y, z = load_triples(points, 3 * (first + n)) if n + 8 <= count else load_triples(tail, 0)
         cell, inside = spread(0.0), spread(1.0)
         for axis in range(3):
-            value = x * frame[axis, 0] + y * frame[axis, 1] + z * frame[axis, 2] + frame[axis, 3]
+            value = affine(frame, axis, x, y, z)
             inside = where_between(value, keep[0, axis], keep[1, axis], inside, 0.0)
             value = clamp(value, limits[0, axis], limits[1, axis])
             column = clamp(whole(value), 0.0, grid[axis] - 1.0)
@@ -90,7 +95,7 @@ def locate(points, first, stop, frame, limits, keep, grid, order, places, local,
 def tabulate(table, at, basis, t):
     """The four basis functions of eight parameters, from ``table[at]`` on."""
     for b in range(4):
-        store(table, at + 8 * b, ((t * basis[3, b] + basis[2, b]) * t + basis[1, b]) * t + basis[0, b])
+        store(table, at + 8 * b, cubic(basis, b, 4, t))
 
 
 @inlined
@@ -135,18 +140,11 @@ def _expand(powers, corner, down_x, down_y, basis, half, cell):
             r0, r1 = load(powers, row), load(powers, row + down_y)
             r2, r3 = load(powers, row + 2 * down_y), load(powers, row + 3 * down_y)
             for q in range(4):
-                mixed = r0 * basis[q, 0] + r1 * basis[q, 1] + r2 * basis[q, 2] + r3 * basis[q, 3]
-                store(half, 64 * i + 16 * q + part, mixed)
+                store(half, 64 * i + 16 * q + part, weighted(basis, 4 * q, 1, r0, r1, r2, r3))
     for at in range(0, 64, 8):
         r0, r1, r2, r3 = load(half, at), load(half, at + 64), load(half, at + 128), load(half, at + 192)
         for p in range(4):
-            store(cell, 64 * p + at, r0 * basis[p, 0] + r1 * basis[p, 1] + r2 * basis[p, 2] + r3 * basis[p, 3])
-
-
-@inlined
-def _along_z(cell, at, t):
-    """A cubic polynomial of eight parameters, from four coefficients."""
-    return ((t * get(cell, at + 3) + get(cell, at + 2)) * t + get(cell, at + 1)) * t + get(cell, at)
+            store(cell, 64 * p + at, weighted(basis, 4 * p, 1, r0, r1, r2, r3))
 
 
 @inlined
@@ -156,9 +154,9 @@ def _polynomials(cell, u, v, w):
     for i in range(192, -64, -64):
         a, b, c = spread(0.0), spread(0.0), spread(0.0)
         for at in range(i + 48, i - 16, -16):
-            a = a * v + _along_z(cell, at, w)
-            b = b * v + _along_z(cell, at + 4, w)
-            c = c * v + _along_z(cell, at + 8, w)
+            a = a * v + cubic(cell, at, 1, w)
+            b = b * v + cubic(cell, at + 4, 1, w)
+            c = c * v + cubic(cell, at + 8, 1, w)
         x, y, z = x * u + a, y * u + b, z * u + c
     return x, y, z
 
@@ -190,7 +188,7 @@ def evaluate(first, starts, order, places, local, grid, stride, basis, powers, s
                 for c in range(3):
                     put(out, n + c, get(base, n + c) + get(moved, 3 * at + c))
         return
-    moved[3 * owned :] = 0.0
+    clear(moved, 3 * owned, 3 * count)
     for n in range(first, first + count - 1):  # the fourth number is overwritten by the next point
         add_triple(out, 3 * n, base, 3 * n, moved, 3 * get(places, n))
     last = 3 * (first + count - 1)
@@ -212,21 +210,21 @@ def differentiate(first, starts, order, local, frame, grid, stride, basis, latti
                 tabulate(table, 64 * axis, basis, load(local, axis * length + at))
                 tabulate_slopes(table, 64 * axis + 32, basis, load(local, axis * length + at))
             for entry in range(9):
-                store(scratch, 8 * entry, spread(linear[entry // 3, entry % 3]))
+                store(scratch, 8 * entry, spread(get(linear, entry)))
             for axis in range(3):
                 x, y, z = 32 * (axis == 0), 64 + 32 * (axis == 1), 128 + 32 * (axis == 2)
                 for c in range(3):
                     slope = _cube(lattice, corner + c, down_x, down_y, table, x, y, z)
                     for a in range(3):
                         place = 8 * (3 * c + a)
-                        store(scratch, place, load(scratch, place) + slope * frame[axis, a])
+                        store(scratch, place, load(scratch, place) + slope * get(frame, 4 * axis + a))
             for i in range(min(8, stop - at)):
                 n = 9 * get(order, at + i)
                 for entry in range(9):
                     put(out, n + entry, get(scratch, 8 * entry + i))
     for at in range(first + starts[cells], first + starts[cells + 1]):
         for entry in range(9):
-            put(out, 9 * get(order, at) + entry, linear[entry // 3, entry % 3])
+            put(out, 9 * get(order, at) + entry, get(linear, entry))
 
 
 @kernel
@@ -240,9 +238,9 @@ def gather(first, starts, order, local, grid, stride, basis, shape, values, latt
         if starts[cell] == starts[cell + 1]:
             continue
         stop = first + starts[cell + 1]
-        sums[:] = 0.0
+        clear(sums, 0, 192 * 8)
         for at in range(first + starts[cell], stop, 8):
-            here[:] = 0.0
+            clear(here, 0, 24)
             for i in range(min(8, stop - at)):
                 for c in range(3):
                     put(here, 3 * i + c, get(values, 3 * get(order, at + i) + c))
@@ -279,18 +277,14 @@ def column(first, starts, order, local, grid, along_x, along_y, along_z, chosen,
         stop = first + starts[cell + 1]
         for place in range(first + starts[cell], stop, 8):
             u, v, w = load(local, place), load(local, length + place), load(local, 2 * length + place)
-            weight = (
-                (((u * along_x[i, 3] + along_x[i, 2]) * u + along_x[i, 1]) * u + along_x[i, 0])
-                * (((v * along_y[j, 3] + along_y[j, 2]) * v + along_y[j, 1]) * v + along_y[j, 0])
-                * (((w * along_z[k, 3] + along_z[k, 2]) * w + along_z[k, 1]) * w + along_z[k, 0])
-            )
-            store(piece, 0, weight)
+            store(piece, 0, cubic(along_x, 4 * i, 1, u) * cubic(along_y, 4 * j, 1, v) * cubic(along_z, 4 * k, 1, w))
             for lane in range(min(8, stop - place)):
-                reached[order[place + lane] - first] = piece[lane]
+                put(reached, get(order, place + lane) - first, get(piece, lane))
     for n in range(count):
-        if not np.isnan(reached[n]):
+        weight = get(reached, n)
+        if not np.isnan(weight):
             points[at] = first + n
-            weights[at] = reached[n]
+            put(weights, at, weight)
             at += 1
 
 

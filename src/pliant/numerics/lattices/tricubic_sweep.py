@@ -12,7 +12,9 @@ import numpy as np
 
 from pliant.numerics.compute.compiling import inlined, kernel
 from pliant.numerics.compute.lanes import (
+    affine,
     clamp,
+    clear,
     get,
     load,
     load_triples,
@@ -47,7 +49,7 @@ def place(x, y, z, frame, limits, keep, grid, stride, shape, local, corner):
     """
     at, odd, inside = spread(0.0), spread(0.0), spread(1.0)
     for axis in range(3):
-        value = x * frame[axis, 0] + y * frame[axis, 1] + z * frame[axis, 2] + frame[axis, 3]
+        value = affine(frame, axis, x, y, z)
         inside = where_between(value, keep[0, axis], keep[1, axis], inside, 0.0)
         value = clamp(value, limits[0, axis], limits[1, axis])
         column = clamp(whole(value), 0.0, grid[axis] - 1.0)
@@ -67,7 +69,8 @@ def sweep(points, first, stop, frame, limits, keep, grid, stride, basis, lattice
     used, but finite. Returns 0 where all coordinates are finite, NaN where any is not: the results then mean nothing.
     """
     table, local, corner, moved = np.empty(96), np.empty(24), np.empty(8), np.empty(32)
-    here, ground = np.zeros(24), np.zeros(24)
+    here, ground = np.empty(24), np.empty(24)
+    clear(here, 0, 24)
     down_x, down_y = shape[1] * shape[2] * 4, shape[2] * 4
     checked = spread(0.0)
     for n in range(first, stop, 8):
