@@ -10,14 +10,15 @@ from typing import Any
 
 import numba
 
-_OPTIONS: dict[str, Any] = {
+_jit: Any = numba.njit  # whose declared types leave out the options on wrappers
+_OPTIONS = {
     "nogil": True,
     "fastmath": {"contract", "reassoc"},
     "error_model": "numpy",  # no kernel divides by zero: nothing asks before each division
     "no_cfunc_wrapper": True,
 }
 
-inlined: Callable[[Callable[..., Any]], Any] = numba.njit(forceinline=True, no_cpython_wrapper=True, **_OPTIONS)
+inlined: Callable[[Callable[..., Any]], Any] = _jit(forceinline=True, no_cpython_wrapper=True, **_OPTIONS)
 """A piece of kernels; Python cannot call it."""
 
 
@@ -26,7 +27,7 @@ def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
 
     Where compiling takes longer than a second, a line on the terminal says so.
     """
-    compiled = numba.njit(cache=True, **_OPTIONS)(function)
+    compiled = _jit(cache=True, **_OPTIONS)(function)
 
     @functools.wraps(function)
     def call(*arguments: Any) -> Any:
