@@ -6,18 +6,21 @@ from dataclasses import dataclass, replace
 from typing import Self
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from pliant.cages.pushing import push_out
+from pliant.cages.enclosing import Enclosing, untangled
+from pliant.cages.linking import Linking
+from pliant.cages.parting import Parts, parted
 from pliant.cages.relaxing import relaxed
-from pliant.cages.rings import Ring, branch, cap, polygon_around, tube
-from pliant.cages.sections import Cut, cut_loop, regions, triangle_edges
+from pliant.cages.sections import Cut
 from pliant.errors import InvalidParameter, InvalidTarget, NotConverged
-from pliant.mesh import Points, PolygonMesh
+from pliant.mesh import PolygonMesh
 from pliant.numerics.meshes.triangle_crossings import self_crossings
-from pliant.numerics.ragged import Ragged
 
-Floats = NDArray[np.float64]
+_FIRST = 4  # vertices between the rings of a region that is linked along the surface, at first
+_ATTEMPTS = 5  # each doubles them where it fails
+_PATIENCE = 2  # attempts for which rings and links may cut one another before the margin is made smaller
+_SHARES = (1.0, 0.5, 0.25)  # of the margin, tried in turn: limbs may be near to one another
 
 
 @dataclass(frozen=True, eq=False)
@@ -27,7 +30,9 @@ class CageBuilder:
     Planes cut the shape across its limbs. Around each cut lies a ring, a polygon of ``sides`` corners. Between two cuts
     the rings are linked by quadrangles, where three cuts or more meet by triangles, and a limb's end gets a cap. Which
     cuts meet follows from the mesh: it is the skeleton that the cuts imply. Then vertices are pushed out until the
-    cage encloses the mesh, and made smoother and tighter while it does.
+    cage encloses the mesh, and made smoother and tighter while it does. A region where that fails, since the shape
+    branches, bends or widens in it, is linked along the surface instead: further vertices are spread over it, and the
+    surface says which belong together.
 
     Parameters
     ----------
@@ -98,24 +103,15 @@ class CageBuilder:
         Raises
         ------
         InvalidParameter, InvalidTarget
-            No cut, one that misses the mesh or separates nothing, one inside its branch; pieces without a cut.
+            No cut, one that misses the mesh or separates nothing, two that cross; pieces without a cut.
         """
-        if not self.cuts:
-            raise InvalidParameter("there is no cut yet: add one by cut(origin, normal)")
-        edges = triangle_edges(self.mesh)
-        loops = [cut_loop(self.mesh, edges, each, number) for number, each in enumerate(self.cuts)]
-        labels, sides = regions(self.mesh, edges, loops, self.cuts)
-        room = self.margin * self.mesh.diagonal
-        parts = [
-            polygon_around(loop.points, each, self.sides, room) for loop, each in zip(loops, self.cuts, strict=True)
-        ]
-        faces: list[Ring] = []
-        for region in np.unique(sides):
-            faces += self._region(int(region), self.mesh.points[labels == region], sides, parts)
-        return PolygonMesh(np.concatenate(parts), Ragged.of(faces))
+        return self._linking(self._parted()).linked({})[0]
 
     def build(self, rounds: int = 3) -> PolygonMesh:
         """The cage.
+
+        Regions whose faces do not enclose what is in them, or cut others, are linked along the surface, with more
+        vertices each time.
 
         Parameters
         ----------
@@ -125,43 +121,36 @@ class CageBuilder:
         Raises
         ------
         NotConverged
-            The rings cannot be pushed out to enclose the mesh without cutting one another.
+            No number of vertices that was tried gives a cage that encloses the mesh and does not cut itself: with the
+            cuts around the regions where it fails.
         """
-        rough, clearance = self.rough(), 0.1 * self.margin * self.mesh.diagonal
-        points, enclosed = push_out(rough.points, rough.triangles, self.mesh, clearance)
-        crossed = len(self_crossings(points, rough.triangles))
-        if not enclosed or crossed:
-            what = f"its faces cut one another in {crossed} places" if enclosed else "the mesh sticks out of it"
-            raise NotConverged(
-                f"the {len(self.cuts)} cuts give a cage, but {what}: add cuts where the shape bends or widens, keep "
-                "cuts of neighbouring limbs apart, or take a smaller margin"
-            )
-        return relaxed(PolygonMesh(points, rough.faces), self.mesh, rounds, clearance)
+        parts, clearance = self._parted(), 0.1 * self.margin * self.mesh.diagonal
+        regions = parts.of_vertices(len(self.mesh.points))
+        for share in _SHARES:
+            linking, places = self._linking(parts, share), dict[int, int]()
+            for attempt in range(_ATTEMPTS):
+                linked, owners = linking.linked(places)
+                rough = untangled(linked, self.mesh)
+                crossed = self_crossings(rough.points, rough.triangles)
+                if len(crossed):
+                    faults = np.unique(owners[rough.triangle_faces[crossed]])
+                    if attempt >= _PATIENCE and share != _SHARES[-1]:
+                        break  # limbs are too near to one another for this margin
+                else:
+                    points, faults = Enclosing(rough, owners, self.mesh, regions, share * clearance).solve()
+                if not len(faults):
+                    return relaxed(rough.with_points(points), self.mesh, rounds, clearance)
+                places |= {region: 2 * places[region] if region in places else _FIRST for region in faults.tolist()}
+        raise NotConverged(
+            f"the {len(self.cuts)} cuts give no cage that encloses the mesh without cutting itself: it fails at "
+            f"{linking.named(faults)}. Add cuts where the shape bends, widens or branches, keep cuts of neighbouring "
+            "limbs apart, or take a smaller margin"
+        )
 
-    def _region(self, region: int, inside: Points, sides: NDArray[np.int64], parts: list[Points]) -> list[Ring]:
-        """The faces of one region; a cap adds a ring to ``parts``."""
-        numbers, rings = [], []
-        for number, (below, above) in enumerate(sides.tolist()):
-            if region in (below, above):
-                ring = list(range(number * self.sides, (number + 1) * self.sides))
-                numbers.append(number)
-                rings.append(ring if region == below else ring[::-1])
-        if len(rings) == 2:
-            return tube(np.concatenate(parts), *rings)
-        if len(rings) > 2:
-            return branch(np.concatenate(parts), rings, numbers)
-        return self._cap(region, inside, numbers[0], rings[0], sides, parts)
+    def _parted(self) -> Parts:
+        if not self.cuts:
+            raise InvalidParameter("there is no cut yet: add one by cut(origin, normal)")
+        return parted(self.mesh, self.cuts)
 
-    def _cap(
-        self, region: int, inside: Points, number: int, ring: Ring, sides: NDArray[np.int64], parts: list[Points]
-    ) -> list[Ring]:
-        cut, room = self.cuts[number], self.margin * self.mesh.diagonal
-        below = region == sides[number, 0]
-        end = cap(ring, inside, cut, cut.normal if below else -cut.normal, room)
-        first = sum(map(len, parts))
-        parts.append(end)
-        last = list(range(first, first + self.sides))
-        last = last if below else last[::-1]  # as the ring is
-        after = [*range(1, self.sides), 0]
-        links = [[last[i], last[j], ring[j], ring[i]] for i, j in enumerate(after)]
-        return [*links, last[::-1]]
+    def _linking(self, parts: Parts, share: float = 1.0) -> Linking:
+        return Linking(parts, self.cuts, self.sides, share * self.margin * self.mesh.diagonal)

@@ -41,8 +41,7 @@ def push_out(points: Points, triangles: Triangles, mesh: PolygonMesh, clearance:
         Whether nothing sticks out any more.
     """
     points, scale = points.copy(), mesh.diagonal
-    corners = mesh.points[mesh.triangles]
-    sizes = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1, initial=0.0)
+    sizes = longest_sides(mesh)
     for _ in range(_ROUNDS):
         violation = violations(points, triangles, mesh, sizes, clearance)
         if not violation.any():
@@ -79,3 +78,9 @@ def violations(points: Points, triangles: Triangles, mesh: PolygonMesh, sizes: F
     if len(pairs):
         np.maximum.at(violation, pairs[:, 0], np.clip(0.2 * sizes[pairs[:, 1]], clearance, 4 * clearance))
     return violation
+
+
+def longest_sides(mesh: PolygonMesh) -> Floats:
+    """(t,) how long the longest side of each triangle is."""
+    corners = mesh.points[mesh.triangles]
+    return np.asarray(np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1, initial=0.0))

@@ -6,7 +6,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pliant.cages.checking import check_cage
-from pliant.cages.pushing import push_out, vertex_directions, violations
+from pliant.cages.pushing import longest_sides, push_out, vertex_directions, violations
 from pliant.mesh import Points, PolygonMesh
 
 _PULL = 0.35  # of the way to the neighbours' mean
@@ -43,8 +43,7 @@ def relaxed(cage: PolygonMesh, mesh: PolygonMesh, rounds: int, clearance: float)
 
 def _tightened(points: Points, triangles: NDArray[np.integer], mesh: PolygonMesh, clearance: float) -> Points:
     """Steps inwards of those vertices whose faces still enclose."""
-    corners = mesh.points[mesh.triangles]
-    sizes = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=2).max(axis=1, initial=0.0)
+    sizes = longest_sides(mesh)
     going = np.ones(len(points), bool)
     steps = 2 * clearance * vertex_directions(points, triangles)
     for _ in range(_TRIES):

@@ -5,8 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from pliant.cages.sections import Cut
-from pliant.errors import InvalidParameter
+from pliant.cages.sections import Cut, axes_across
 from pliant.mesh import Points
 
 Floats = NDArray[np.float64]
@@ -19,7 +18,7 @@ def polygon_around(points: Points, cut: Cut, sides: int, margin: float) -> Point
 
     Its sides look in evenly spaced directions; it is counter-clockwise about the cut's normal.
     """
-    first, second = _axes(cut.normal)
+    first, second = axes_across(cut.normal)
     flat = np.stack([(points - cut.origin) @ first, (points - cut.origin) @ second], axis=1)
     angles = 2 * np.pi * np.arange(sides) / sides
     directions = np.stack([np.cos(angles), np.sin(angles)], axis=1)
@@ -41,13 +40,10 @@ def tube(points: Points, one: Ring, two: Ring) -> list[Ring]:
     return [[turned[i], turned[j], two[j], two[i]] for i, j in enumerate(after)]
 
 
-def branch(points: Points, rings: list[Ring], numbers: list[int]) -> list[Ring]:
+def branch(points: Points, rings: list[Ring]) -> list[Ring] | None:
     """Triangles between three rings or more: their convex hull, without the rings themselves.
 
-    Raises
-    ------
-    InvalidParameter
-        A ring lies inside the hull of the others, so that it bounds no side of it.
+    None where a ring lies inside the hull of the others, so that it bounds no side of it.
     """
     from scipy.spatial import ConvexHull
 
@@ -62,14 +58,8 @@ def branch(points: Points, rings: list[Ring], numbers: list[int]) -> list[Ring]:
     faces = used[triangles[between]]
     half = {(int(a), int(b)) for face in faces for a, b in zip(face, np.roll(face, -1), strict=True)}
     border = {(a, b) for a, b in half if (b, a) not in half}
-    for number, ring in zip(numbers, rings, strict=True):
-        wanted = {(b, a) for a, b in zip(ring, ring[1:] + ring[:1], strict=True)}
-        if not wanted <= border:
-            raise InvalidParameter(
-                f"cut {number} lies inside the hull of the other cuts around its branch: move it outwards along its "
-                "limb, or turn it"
-            )
-    return [face.tolist() for face in faces]
+    wanted = {(b, a) for ring in rings for a, b in zip(ring, ring[1:] + ring[:1], strict=True)}
+    return [face.tolist() for face in faces] if wanted <= border else None
 
 
 def cap(ring: Ring, region: Points, cut: Cut, outwards: Floats, margin: float) -> Points:
@@ -79,11 +69,3 @@ def cap(ring: Ring, region: Points, cut: Cut, outwards: Floats, margin: float) -
     far = region[depth >= 0.5 * deepest]
     last = Cut(cut.origin - (deepest + margin) * outwards, cut.normal)
     return polygon_around(far, last, len(ring), margin)
-
-
-def _axes(normal: Floats) -> tuple[Floats, Floats]:
-    """Two unit vectors across a normal, the first as near as can be to a coordinate axis."""
-    axis = np.eye(3)[np.abs(normal).argmin()]
-    first = axis - (axis @ normal) * normal
-    first /= np.linalg.norm(first)
-    return first, np.cross(normal, first)

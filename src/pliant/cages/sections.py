@@ -1,4 +1,4 @@
-"""Cutting a mesh by planes: the loop where a plane passes through one limb, and the regions between such loops."""
+"""Cutting a mesh by planes: the loop where a plane passes through one limb, of all the loops that it gives."""
 
 from __future__ import annotations
 
@@ -7,14 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pliant.errors import InvalidParameter, InvalidTarget
+from pliant.errors import InvalidParameter
 from pliant.mesh import Points, PolygonMesh
 from pliant.numerics.meshes.manifold import pieces
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.int64]
-
-_SAME = 0.25  # of a piece's reach: middles that are no farther apart count as one place
 
 
 @dataclass(frozen=True)
@@ -34,88 +32,84 @@ class Loop:
 
 
 def cut_loop(mesh: PolygonMesh, edges: Indices, cut: Cut, number: int) -> Loop:
-    """The piece of a plane's section whose middle is nearest to the plane's origin; of nested ones, the outermost.
+    """The piece of a plane's section around the plane's origin, or nearest to it; of nested ones the outermost.
 
     Raises
     ------
     InvalidParameter
         The plane misses the mesh.
     """
-    height = (mesh.points - cut.origin) @ cut.normal
+    return section(mesh.points, mesh.triangles.astype(np.int64), edges, cut, number)
+
+
+def section(points: Points, triangles: Indices, edges: Indices, cut: Cut, number: int) -> Loop:
+    """The same of (t, 3) triangles whose (e, 2) edges are known."""
+    height = (points - cut.origin) @ cut.normal
     above = height >= 0
     crossing = np.flatnonzero(above[edges[:, 0]] != above[edges[:, 1]])
     if not len(crossing):
         raise InvalidParameter(f"cut {number} misses the mesh: move its origin into the limb that it shall cut")
     a, b = edges[crossing].T
     part = height[a] / (height[a] - height[b])
-    points = mesh.points[a] + part[:, None] * (mesh.points[b] - mesh.points[a])
-    count, piece = pieces(_neighbours(mesh, edges, crossing), len(crossing))
-    sums = np.stack([np.bincount(piece, points[:, i], count) for i in range(3)], axis=1)
-    centers = sums / np.bincount(piece, minlength=count)[:, None]
-    reach = np.zeros(count)
-    np.maximum.at(reach, piece, np.linalg.norm(points - centers[piece], axis=1))
-    distance = np.linalg.norm(centers - cut.origin, axis=1)
-    near = distance <= distance.min() + _SAME * reach
-    chosen = piece == np.where(near, reach, -1.0).argmax()  # of nested ones, the outer
-    return Loop(points[chosen], crossing[chosen])
+    places = points[a] + part[:, None] * (points[b] - points[a])
+    segments = _segments(len(points), triangles, edges, crossing)
+    count, piece = pieces(segments, len(crossing))
+    distance = np.linalg.norm(places - cut.origin, axis=1)
+    near, reach = np.full(count, np.inf), np.zeros(count)
+    np.minimum.at(near, piece, distance)
+    np.maximum.at(reach, piece, distance)
+    around = _around(places, segments, piece, count, cut)
+    near[around] = 0.0
+    reach[near > near.min()] = -1.0
+    chosen = piece == reach.argmax()  # of those around the origin, the one that goes farthest
+    return Loop(places[chosen], crossing[chosen])
 
 
 def triangle_edges(mesh: PolygonMesh) -> Indices:
     """(e, 2) the edges of the mesh's triangles, each once."""
-    triangles = mesh.triangles.astype(np.int64)
-    half = np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2).reshape(-1, 2)
-    return np.asarray(np.unique(np.sort(half, axis=1), axis=0))
+    return edges_of(mesh.triangles)
 
 
-def regions(mesh: PolygonMesh, edges: Indices, loops: list[Loop], cuts: tuple[Cut, ...]) -> tuple[Indices, Indices]:
-    """What loops cut a mesh into.
-
-    Returns
-    -------
-    labels
-        (n,) the region of each vertex; -1 for vertices without faces.
-    sides
-        (c, 2) for each cut the region below and above its plane.
-
-    Raises
-    ------
-    InvalidParameter
-        A cut that does not separate two regions.
-    InvalidTarget
-        A piece of the mesh that no cut passes through.
-    """
-    kept = np.ones(len(edges), bool)
-    for loop in loops:
-        kept[loop.edges] = False
-    _, labels = pieces(edges[kept], len(mesh.points))
-    unused = np.ones(len(mesh.points), bool)
-    unused[edges] = False
-    labels[unused] = -1
-    sides = np.empty((len(cuts), 2), np.int64)
-    for number, (loop, cut) in enumerate(zip(loops, cuts, strict=True)):
-        ends = edges[loop.edges]
-        above = (mesh.points[ends] - cut.origin) @ cut.normal >= 0
-        sides[number] = [np.bincount(labels[ends[above == up]]).argmax() for up in (False, True)]
-        if sides[number, 0] == sides[number, 1]:
-            raise InvalidParameter(f"cut {number} separates nothing: a handle needs two cuts, or one more elsewhere")
-    missed = np.setdiff1d(labels[labels >= 0], sides)
-    if len(missed):
-        first = int(np.flatnonzero(labels == missed[0])[0])
-        raise InvalidTarget(
-            f"{len(missed)} pieces of the mesh are cut by no plane, the first holds vertex {first}: cut them too, or "
-            "leave them out"
-        )
-    return labels, sides
+def edges_of(triangles: NDArray[np.integer]) -> Indices:
+    """(e, 2) the edges of triangles, each once, sorted."""
+    return np.asarray(np.unique(np.sort(half_edges_of(triangles), axis=1), axis=0))
 
 
-def _neighbours(mesh: PolygonMesh, edges: Indices, crossing: Indices) -> Indices:
+def half_edges_of(triangles: NDArray[np.integer]) -> Indices:
+    """(3 t, 2) the sides of triangles in their directions."""
+    whole = triangles.astype(np.int64)
+    return np.stack([whole, np.roll(whole, -1, axis=1)], axis=2).reshape(-1, 2)
+
+
+def edge_places(count: int, edges: Indices, half: Indices) -> Indices:
+    """(h,) where among sorted edges of ``count`` vertices each half edge is."""
+    ends = np.sort(half, axis=1)
+    return np.searchsorted(edges[:, 0] * count + edges[:, 1], ends[:, 0] * count + ends[:, 1])
+
+
+def _segments(count: int, triangles: Indices, edges: Indices, crossing: Indices) -> Indices:
     """(k, 2) pairs of crossing edges that share a triangle."""
     place = np.full(len(edges), -1)
     place[crossing] = np.arange(len(crossing))
-    triangles = mesh.triangles.astype(np.int64)
-    half = np.sort(np.stack([triangles, np.roll(triangles, -1, axis=1)], axis=2).reshape(-1, 2), axis=1)
-    count = len(mesh.points)
-    found = np.searchsorted(edges[:, 0] * count + edges[:, 1], half[:, 0] * count + half[:, 1])
-    sides = place[found].reshape(-1, 3)
+    sides = place[edge_places(count, edges, half_edges_of(triangles))].reshape(-1, 3)
     pairs = np.concatenate([sides[:, [0, 1]], sides[:, [1, 2]], sides[:, [2, 0]]])
     return pairs[(pairs >= 0).all(axis=1)]
+
+
+def _around(places: Points, segments: Indices, piece: Indices, count: int, cut: Cut) -> NDArray[np.bool_]:
+    """(count,) which pieces have the origin inside: a ray from it meets an odd number of their segments."""
+    first, second = axes_across(cut.normal)
+    u, v = (places - cut.origin) @ first, (places - cut.origin) @ second
+    (a, b), (c, d) = u[segments].T, v[segments].T
+    crosses = (c > 0) != (d > 0)
+    along = a[crosses] - c[crosses] * (b[crosses] - a[crosses]) / (d[crosses] - c[crosses])
+    met = piece[segments[:, 0][crosses]][along > 0]
+    return np.asarray(np.bincount(met, minlength=count) % 2 == 1)
+
+
+def axes_across(normal: Floats) -> tuple[Floats, Floats]:
+    """Two unit vectors across a normal, the first as near as can be to a coordinate axis."""
+    axis = np.eye(3)[np.abs(normal).argmin()]
+    first = axis - (axis @ normal) * normal
+    first /= np.linalg.norm(first)
+    return first, np.cross(normal, first)

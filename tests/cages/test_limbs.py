@@ -1,0 +1,127 @@
+"""Cages by cuts around bodies with limbs: closed, simple and enclosing, whatever way regions are linked."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from limbed_bodies import FIGURE_CUTS, QUADRUPED_CUTS, figure, grown, quadruped
+from scipy.spatial import ConvexHull
+
+from pliant.cages.builder import CageBuilder
+from pliant.cages.checking import check_cage
+from pliant.cages.linking import Linking
+from pliant.cages.parting import parted
+from pliant.cages.sections import Cut, cut_loop, triangle_edges
+from pliant.errors import InvalidParameter
+from pliant.field.volumes import volume
+from pliant.mesh import PolygonMesh
+
+
+def with_cuts(mesh, cuts, **options):
+    builder = CageBuilder(mesh, **options)
+    for origin, normal in cuts:
+        builder = builder.cut(origin, normal)
+    return builder
+
+
+@pytest.mark.parametrize(
+    ("mesh", "cuts"), [(figure(), FIGURE_CUTS), (quadruped(), QUADRUPED_CUTS)], ids=["figure", "quadruped"]
+)
+def test_a_body_with_limbs_gets_a_cage_that_passes_the_check(mesh, cuts):
+    cage = with_cuts(mesh, cuts).build(rounds=1)
+    report = check_cage(cage, mesh)
+    assert report.ok, report.failures
+    assert (report.components, report.genus) == (1, 0)
+    assert report.volume_ratio < 4
+    assert len(cage.points) < 250
+
+
+def test_a_plane_through_both_legs_counts_for_the_one_around_its_origin():
+    mesh = figure()
+    edges = triangle_edges(mesh)
+    for x in (-0.21, 0.21):
+        loop = cut_loop(mesh, edges, Cut(np.array([x, 0.0, -0.5]), np.array([0.0, 0.0, 1.0])), 0)
+        assert (np.sign(loop.points[:, 0]) == np.sign(x)).all()
+        assert np.abs(loop.points[:, 2] + 0.5).max() < 1e-9
+    beside = cut_loop(mesh, edges, Cut(np.array([0.9, 0.0, -0.5]), np.array([0.0, 0.0, 1.0])), 0)
+    assert (beside.points[:, 0] > 0).all()  # outside of all: the nearest
+
+
+def test_parting_keeps_the_surface_and_gives_each_side_of_a_cut_its_region():
+    mesh = quadruped()
+    builder = with_cuts(mesh, QUADRUPED_CUTS)
+    parts = parted(mesh, builder.cuts)
+    whole = PolygonMesh(parts.points, parts.triangles)
+    assert whole.edge_use == (0, 0)
+    assert volume(whole) == pytest.approx(volume(mesh), rel=1e-5)  # places on edges are kept off their ends
+    assert len(np.unique(parts.region)) == len(QUADRUPED_CUTS) + 1  # a tree of limbs
+    for cut, rim, (below, above) in zip(builder.cuts, parts.rims, parts.sides, strict=True):
+        flat = parts.points[rim] - parts.points[rim].mean(axis=0)
+        area = np.cross(flat, np.roll(flat, -1, axis=0)).sum(axis=0) / 2
+        assert area @ cut.normal > 0  # counter-clockwise
+        for region, sign in ((below, -1), (above, 1)):
+            near = np.isin(parts.triangles, rim).any(axis=1) & (parts.region == region)
+            heights = (parts.points[parts.triangles[near]] - cut.origin) @ cut.normal
+            assert (sign * heights.sum(axis=1) > -1e-6).all()
+
+
+@pytest.mark.parametrize("wanted", [0, 3, 12, 30])
+def test_regions_linked_along_the_surface_are_closed_with_as_many_places_as_wanted(wanted):
+    mesh = figure()
+    builder = with_cuts(mesh, FIGURE_CUTS)
+    parts = parted(mesh, builder.cuts)
+    linking = Linking(parts, builder.cuts, 6, 0.01)
+    simple, _ = linking.linked({})
+    for region in np.unique(parts.region).tolist():
+        cage, owners = linking.linked({region: wanted})
+        assert cage.edge_use == (0, 0)
+        assert volume(cage) > 0
+        assert len(cage.points) - len(cage.edges) + len(cage.faces) == 2
+        rings = len(builder.cuts) * 6
+        np.testing.assert_array_equal(cage.points[:rings], simple.points[:rings])
+        inner = np.setdiff1d(cage.faces.flat[np.repeat(owners, cage.faces.lengths) == region], np.arange(rings))
+        assert len(inner) >= wanted
+
+
+def test_a_limb_with_fingers_gets_a_hull():
+    fingers = [([0, s, 1], [0, 1.6 * s, 1.6], 0.07) for s in (-0.3, -0.1, 0.1, 0.3)]
+    mesh = grown([([0, 0, 0], [0, 0, 0.9], 0.2), ([0, -0.3, 1], [0, 0.3, 1], 0.12), *fingers])
+    builder = with_cuts(mesh, [([0, 0, 0.4], [0, 0, 1])], margin=0.01)
+    parts = parted(mesh, builder.cuts)
+    hand = int(parts.sides[0, 1])
+    cage, owners = Linking(parts, builder.cuts, 6, 0.02).linked({hand: 16})
+    corners = np.unique(cage.faces.flat[np.repeat(owners, cage.faces.lengths) == hand])
+    sides = ConvexHull(mesh.points[mesh.points[:, 2] > 0.4]).equations
+    beyond = (cage.points[corners[corners >= 6]] @ sides[:, :3].T + sides[:, 3]).max(axis=1)
+    assert len(beyond) >= 16
+    assert (beyond > 0).all()  # none between the fingers
+    cage = builder.build(rounds=0)
+    assert check_cage(cage, mesh).ok
+
+
+def test_a_mesh_with_holes_is_cut_as_if_they_were_closed():
+    mesh = quadruped()
+    middle = mesh.points[mesh.triangles].mean(axis=1)
+    holes = np.linalg.norm(middle - [0.3, 0, 0.28], axis=1) < 0.12
+    holes |= np.linalg.norm(middle - [0, 0.26, 0], axis=1) < 0.1  # where a cut goes through
+    opened = PolygonMesh(mesh.points, mesh.triangles[~holes])
+    assert holes.sum() > 10
+    assert opened.edge_use[0] > 0
+    cage = with_cuts(opened, QUADRUPED_CUTS).build(rounds=0)
+    assert check_cage(cage, opened).ok
+
+
+def test_a_mesh_that_is_inside_out_gets_the_same_cage():
+    mesh = quadruped()
+    cages = [
+        with_cuts(each, QUADRUPED_CUTS).build(rounds=0)
+        for each in (mesh, PolygonMesh(mesh.points, mesh.triangles[:, ::-1]))
+    ]
+    assert check_cage(cages[1], mesh).ok
+    assert len(cages[0].points) == len(cages[1].points)
+
+
+def test_cuts_that_cross_are_named():
+    crossing = with_cuts(quadruped(), [([0, 0, 0], [1, 0, 0]), ([0, 0, 0], [1, 0, 0.3])])
+    with pytest.raises(InvalidParameter, match="cuts 0 and 1 cross one another"):
+        crossing.build()
