@@ -9,6 +9,7 @@ import os
 import signal
 import threading
 import time
+from concurrent.futures import Future
 from pathlib import Path
 
 import numpy as np
@@ -16,10 +17,10 @@ import pytest
 from distributed import Client, LocalCluster
 
 import pliant as pl
-from pliant.batch.crews import Pool
+from pliant.batch.crews import Crew, Pool
 from pliant.batch.dispatch import outcomes
-from pliant.batch.outcome import Job
-from pliant.batch.parcel import sent
+from pliant.batch.outcome import Job, Outcome
+from pliant.batch.parcel import Parcel, sent
 from pliant.batch.plans import plan_of
 from pliant.examples import vase
 
@@ -118,3 +119,33 @@ def test_a_mesh_that_kills_its_workers_fails_alone(cohort, tmp_path, monkeypatch
     assert sorted(found) == list(range(12))
     assert [i for i, each in sorted(found.items()) if each.status == "failed"] == [5]
     assert "cost 3 workers" in found[5].error
+
+
+class Brittle(Crew):
+    """Workers of whom each portion that holds a given job costs one; the others do what they are given."""
+
+    width, elsewhere = 1, True
+
+    def __init__(self, deadly: int) -> None:
+        self.deadly, self.portions = deadly, []
+
+    def submit(self, parcel, jobs, strict):
+        self.portions.append([job.index for job in jobs])
+        future = Future()
+        if self.deadly in self.portions[-1]:
+            future.set_exception(OSError("the worker is gone"))
+        else:
+            future.set_result([Outcome(job.index, job.input, job.output, "ok", seconds=1e-3) for job in jobs])
+        return future
+
+
+def test_jobs_that_travel_together_are_tried_one_by_one_when_their_worker_is_lost(tmp_path):
+    crew = Brittle(deadly=20)
+    jobs = [Job(i, tmp_path / f"{i}.ply", tmp_path / f"out{i}.ply") for i in range(100)]
+    found = {each.index: each for each in outcomes(crew, Parcel(b"none"), jobs, strict=False)}
+    assert sorted(found) == list(range(100))
+    assert [i for i, each in found.items() if each.status == "failed"] == [20]
+    lost = next(portion for portion in crew.portions if 20 in portion)
+    assert len(crew.portions[0]) == 1 < len(lost) <= 50  # the first goes alone: nobody knows how long a job takes
+    assert all([i] in crew.portions for i in lost)
+    assert crew.portions.count([20]) == 3

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 import multiprocessing
 from abc import ABC, abstractmethod
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from concurrent.futures import BrokenExecutor, Executor, Future, ProcessPoolExecutor, ThreadPoolExecutor
 from contextlib import contextmanager
 from typing import Any
 
 from pliant.batch.outcome import Job, Outcome
 from pliant.batch.parcel import Parcel
-from pliant.batch.work import carry_out
+from pliant.batch.work import carry_out_elsewhere, carry_out_here
 from pliant.errors import InvalidParameter
 from pliant.numerics.compute.chunks import processors
 
-_AHEAD = 256  # jobs that wait at an executor whose size is not known
+_MANY = 64  # workers that an executor is taken for which does not say how many it has, or may get more
 
 
 class Crew(ABC):
@@ -24,7 +24,7 @@ class Crew(ABC):
     Parameters
     ----------
     width
-        How many jobs they have at a time.
+        How many portions of jobs they have at a time.
     elsewhere
         Whether they are other processes.
     """
@@ -33,8 +33,8 @@ class Crew(ABC):
     elsewhere: bool = False
 
     @abstractmethod
-    def submit(self, parcel: Parcel, job: Job, strict: bool) -> Future[Outcome]:
-        """Have a job done."""
+    def submit(self, parcel: Parcel, jobs: Sequence[Job], strict: bool) -> Future[list[Outcome]]:
+        """Have jobs done, one after another by one worker."""
 
     def renewed(self) -> bool:
         """Whether there are workers again after all have been lost."""
@@ -44,21 +44,22 @@ class Crew(ABC):
 class Here(Crew):
     """No others: the calling process does one job after another."""
 
-    def submit(self, parcel: Parcel, job: Job, strict: bool) -> Future[Outcome]:
-        future: Future[Outcome] = Future()
-        future.set_result(carry_out(parcel, job, strict))
+    def submit(self, parcel: Parcel, jobs: Sequence[Job], strict: bool) -> Future[list[Outcome]]:
+        future: Future[list[Outcome]] = Future()
+        future.set_result(carry_out_here(parcel, jobs, strict))
         return future
 
 
 class Given(Crew):
     """An executor of the user's."""
 
-    def __init__(self, executor: Executor, width: int = _AHEAD) -> None:
-        self._executor, self.width = executor, width
+    def __init__(self, executor: Executor, workers: int) -> None:
+        self._executor, self.width = executor, 2 * workers
         self.elsewhere = not isinstance(executor, ThreadPoolExecutor)
+        self._work = carry_out_elsewhere if self.elsewhere else carry_out_here
 
-    def submit(self, parcel: Parcel, job: Job, strict: bool) -> Future[Outcome]:
-        return self._executor.submit(carry_out, parcel, job, strict)
+    def submit(self, parcel: Parcel, jobs: Sequence[Job], strict: bool) -> Future[list[Outcome]]:
+        return self._executor.submit(self._work, parcel, jobs, strict)
 
 
 class Pool(Crew):
@@ -76,8 +77,8 @@ class Pool(Crew):
         self._workers, self.width = workers, 2 * workers
         self._pool = self._started()
 
-    def submit(self, parcel: Parcel, job: Job, strict: bool) -> Future[Outcome]:
-        return self._pool.submit(carry_out, parcel, job, strict)
+    def submit(self, parcel: Parcel, jobs: Sequence[Job], strict: bool) -> Future[list[Outcome]]:
+        return self._pool.submit(carry_out_elsewhere, parcel, jobs, strict)
 
     def renewed(self) -> bool:
         self.close()
@@ -138,9 +139,9 @@ def crew_of(executor: Any, workers: int | None, jobs: int) -> Iterator[Crew]:
 
 def _given(executor: Any) -> Crew:
     if isinstance(executor, Executor):
-        return Given(executor)
+        return Given(executor, getattr(executor, "_max_workers", _MANY))
     if hasattr(executor, "get_executor") and hasattr(executor, "nthreads"):  # a client of Dask's
-        return Given(executor.get_executor(), max(_AHEAD, 4 * sum(executor.nthreads().values())))
+        return Given(executor.get_executor(), max(_MANY, sum(executor.nthreads().values())))
     raise InvalidParameter(
         f"a {type(executor).__name__} is no executor: pass one of concurrent.futures, or a client of dask.distributed"
     )

@@ -54,14 +54,17 @@ class Ledger:
 
     def known(self, job: Job) -> Outcome | None:
         """The outcome of a job that an earlier run did: from the same input, the same way, and still as it was left."""
-        line = self._lines.get(self._key(job))
+        line = self._lines.get(self._key(job)) if self._lines else None
         if line is None or line.get("size") != _size(job.output):
             return None
         losses, points = tuple(line.get("losses", ())), int(line.get("points", 0))
         return Outcome(job.index, job.input, job.output, "ok", losses=losses, points=points, resumed=True)
 
     def add(self, job: Job, outcome: Outcome) -> None:
-        """Write an outcome down."""
+        """Write an outcome down, for a run that goes on after this one was killed.
+
+        It does not wait for the disk: what a loss of power takes from the end is only done again.
+        """
         line = {"job": self._key(job), **vars(outcome), "size": _size(job.output) if outcome.status == "ok" else None}
         del line["resumed"]
         try:
@@ -75,7 +78,7 @@ class Ledger:
             state = job.input.stat()
         except OSError:
             return ""
-        places = [str(job.input.absolute()), str(job.output.absolute())]
+        places = [str(job.input), str(job.output)]
         return key_of(self._plan, places, state.st_size, state.st_mtime_ns, job.controls).hex()
 
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from functools import cache
 from pathlib import Path
 from string import Formatter
 
@@ -39,9 +40,10 @@ def output_paths(pattern: Path | str, inputs: Sequence[Path], copies: Sequence[i
     numbers = [0] * len(inputs) if copies is None else copies
     outputs = [Path(_filled(parts, path, i, copy)) for i, (path, copy) in enumerate(zip(inputs, numbers, strict=True))]
     taken: dict[str, int] = {}
-    sources = {_place(path) for path in inputs}
+    place_of = _places()
+    sources = {place_of(path) for path in inputs}
     for i, output in enumerate(outputs):
-        place = _place(output)
+        place = place_of(output)
         if place in taken:
             raise InvalidParameter(
                 f"{inputs[taken[place]]} and {inputs[i]} would both be written to {output}: nothing was done (put "
@@ -88,6 +90,11 @@ def _filled(parts: list[tuple[str, str | None, str]], path: Path, index: int, co
         raise InvalidParameter(f"a word of the pattern cannot be written so: {error}") from error
 
 
-def _place(path: Path) -> str:
-    """A path as the file system knows it."""
-    return os.path.normcase(path.parent.resolve() / path.name)
+def _places() -> Callable[[Path], str]:
+    """What gives paths as the file system knows them; it is asked once about a folder."""
+    resolved = cache(Path.resolve)
+
+    def place(path: Path) -> str:
+        return os.path.normcase(resolved(path.parent) / path.name)
+
+    return place

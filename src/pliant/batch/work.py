@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from pliant.batch.outcome import Job, Outcome, failed
@@ -10,6 +11,7 @@ from pliant.batch.parcel import Parcel
 from pliant.io.files import read_bytes
 from pliant.io.meshes import read_mesh_bytes, write
 from pliant.mesh import PolygonMesh
+from pliant.numerics.compute.chunks import in_this_thread
 from pliant.numerics.compute.one_thread import one_blas_thread
 from pliant.scene.cache import Cache
 from pliant.scene.stack import Stack
@@ -41,6 +43,17 @@ class Known:
         return _ROOM + 32 * self.mesh.points.nbytes
 
 
+def carry_out_here(parcel: Parcel, jobs: Sequence[Job], strict: bool) -> list[Outcome]:
+    """Do jobs one after another, on all processors."""
+    return [carry_out(parcel, job, strict) for job in jobs]
+
+
+def carry_out_elsewhere(parcel: Parcel, jobs: Sequence[Job], strict: bool) -> list[Outcome]:
+    """Do jobs one after another, on one processor: the others have jobs of their own."""
+    with in_this_thread(), one_blas_thread():
+        return carry_out_here(parcel, jobs, strict)
+
+
 def carry_out(parcel: Parcel, job: Job, strict: bool) -> Outcome:
     """Do a job. Whatever goes wrong is its outcome."""
     start = time.perf_counter()
@@ -60,7 +73,7 @@ def carry_out(parcel: Parcel, job: Job, strict: bool) -> Outcome:
 def _known(job: Job) -> Known:
     """The mesh of a job; files of equal bytes are read once, if textures would be found in the same folder."""
     data = read_bytes(job.input)
-    key = data, str(job.input.absolute().parent), tuple(job.input.suffixes)
+    key = data, str(job.input.parent), tuple(job.input.suffixes)
     known: Known | None = _memory.get(key)
     if known is None:
         known = Known(read_mesh_bytes(data, job.input, folder=job.input.parent))

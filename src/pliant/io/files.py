@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import os
-import tempfile
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
+from secrets import token_hex
 
 from pliant.errors import UnreadableFile, UnwritableFile
 
@@ -50,21 +50,32 @@ def replacing(path: Path | str, *, durable: bool = False) -> Iterator[Path]:
 
 @contextmanager
 def _renamed(target: Path, *, durable: bool) -> Iterator[Path]:
-    target.parent.mkdir(parents=True, exist_ok=True)
-    handle, name = tempfile.mkstemp(dir=target.parent, prefix=f".{target.stem}-", suffix=target.suffix)
-    os.close(handle)
-    temporary = Path(name)
+    temporary = _begun(target)
     try:
-        temporary.chmod(0o666 & ~_umask())
         yield temporary
         if durable:
             with temporary.open("rb") as written:
                 os.fsync(written.fileno())
         temporary.replace(target)
-        if durable:
-            _settle(target.parent)
-    finally:
+    except BaseException:
         temporary.unlink(missing_ok=True)
+        raise
+    if durable:
+        _settle(target.parent)
+
+
+def _begun(target: Path) -> Path:
+    """An empty file of a new name beside the target; folders are made where they are missing."""
+    while True:
+        path = target.parent / f".{target.stem}-{token_hex(4)}{target.suffix}"
+        try:
+            os.close(os.open(path, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
+        except FileExistsError:
+            pass
+        except FileNotFoundError:
+            target.parent.mkdir(parents=True, exist_ok=True)
+        else:
+            return path
 
 
 def write_bytes(path: Path | str, parts: bytes | Iterable[bytes | memoryview]) -> None:
@@ -84,9 +95,3 @@ def _settle(folder: Path) -> None:
             os.fsync(handle)
         finally:
             os.close(handle)
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask

@@ -115,13 +115,17 @@ class Evaluator:
 
     def _image(self, layer: Layer, at: Points, place: bytes) -> Points:
         """The deformer's image, the caller's own; bound where it has been asked for at this place before."""
-        seen = key_of("seen", place)
-        if layer.in_space and self._cache.get(place) is None and self._cache.get(seen) is None:
-            self._cache.put(seen, True)
+        if layer.in_space and self._cache.get(place) is None and self._first_time(place):
             image = layer.deformer._deformed(at)
             return image.copy() if image is at or not image.flags.writeable else image
         binding = self._bound(layer, at, place)
         return binding.deform(controls_of(layer, binding))
+
+    def _first_time(self, place: bytes) -> bool:
+        seen = key_of("seen", place)
+        known = self._cache.get(seen) is not None
+        self._cache.put(seen, True)
+        return not known
 
     def _bound(self, layer: Layer, at: Points, place: bytes) -> Binding:
         found: Binding | None = self._cache.get(place)

@@ -5,14 +5,45 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cache
+from threading import Lock
 from typing import Any
 
 
 @contextmanager
 def one_blas_thread() -> Iterator[None]:
-    """Keep NumPy's and SciPy's linear algebra in this thread, for matrices up to some hundred rows."""
-    with _controller().limit(limits=1, user_api="blas"):
+    """Keep NumPy's and SciPy's linear algebra in its callers' threads, for matrices up to some hundred rows.
+
+    The number of BLAS threads is one for the whole process: the first who is here lowers it, the last to go puts it
+    back.
+    """
+    _limit.enter()
+    try:
         yield
+    finally:
+        _limit.leave()
+
+
+class _Limit:
+    """Those who want one thread, counted."""
+
+    def __init__(self) -> None:
+        self._lock, self._inside = Lock(), 0
+        self._lowered: Any = None
+
+    def enter(self) -> None:
+        with self._lock:
+            if not self._inside:
+                self._lowered = _controller().limit(limits=1, user_api="blas")
+            self._inside += 1
+
+    def leave(self) -> None:
+        with self._lock:
+            self._inside -= 1
+            if not self._inside:
+                self._lowered.restore_original_limits()
+
+
+_limit = _Limit()
 
 
 @cache
