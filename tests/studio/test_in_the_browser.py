@@ -384,7 +384,14 @@ def test_the_help_sheet_and_the_view_by_keys(launched, view):
     page.page.keyboard.press("p")
     page.settled()
     page.page.keyboard.press("?")
-    page.page.get_by_role("dialog", name="Keyboard and mouse").wait_for()
+    sheet = page.page.get_by_role("dialog", name="Keyboard and mouse")
+    sheet.wait_for()
+    own = sheet.locator("details[open]")  # the keys of the mode that is on
+    assert own.count() == 1
+    assert "Soft selection" in own.inner_text()
+    sheet.locator("summary", has_text="Edit the surface").click()
+    assert "The next method, also while you drag" in sheet.locator("details[open]").last.inner_text()
+    page.picture("help-sheet")
     page.page.keyboard.press("Escape")
 
 
@@ -416,3 +423,24 @@ def test_a_connection_that_comes_back_shows_what_has_happened_meanwhile(launched
     page.until("document.querySelector('.link.open') !== null")
     page.settled()
     same_points(page)
+
+
+def test_a_drag_is_locked_to_an_axis_of_a_lattice_that_is_turned(launched, view):
+    mesh = round_scene().mesh
+    axes = np.linalg.qr(np.array([[2.0, 0.3, 0.1], [0.5, 2.0, -0.2], [0.6, 0.4, 2.0]]))[0]
+    axes[:, 2] *= np.linalg.det(axes)
+    lattice = pl.BSplineFFD.around(mesh, shape=(3, 3, 3), axes=axes)
+    page = view(launched(pl.Scene(mesh, pl.Stack([pl.Layer("Lattice", lattice)]))))
+    page.drawn()
+    page.handles()
+    page.page.locator("canvas").first.focus()
+    for key in ("l", "x"):
+        page.page.keyboard.press(key)
+    revision = page.session.revision
+    page.drag(page.control(26), (60, -40))
+    page.committed(revision)
+    move = page.session.scene.stack["Lattice"].deformer.displacements[2, 2, 2]
+    assert np.linalg.norm(move) > 0.05
+    np.testing.assert_allclose(np.abs(move @ axes) / np.linalg.norm(move), [1, 0, 0], atol=1e-9)
+    same_points(page)
+    page.picture("local-axes")

@@ -9,7 +9,7 @@ from pages import joined
 import pliant as pl
 from pliant.scene.project import load_project, save_project
 from pliant.studio.examples.samples import ball, egg
-from pliant.studio.modes.lattices import links, places_around
+from pliant.studio.modes.lattices import axes_of, links, places_around
 
 MESH = egg()
 THIRDS = [1 / 3, 1 / 3, 1 / 3]
@@ -146,3 +146,12 @@ def test_requests_that_make_no_sense_are_refused():
         ):
             assert page.refused(session, "sites.place", values)["kind"] == "InvalidParameter"
         assert "2 to" in page.refused(session, "sites.scatter", {"count": 1})["message"]
+
+
+def test_a_placed_lattice_is_seen_where_it_stands():
+    turn = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+    frame = pl.Affine.of(2.0 * turn, [0.3, 0.0, -0.2])
+    box, cylinder = pl.BSplineFFD.around(MESH, shape=(3, 3, 3)), pl.ExtendedFFD.cylinder(MESH)
+    np.testing.assert_allclose(axes_of(pl.place(box, frame)), turn, atol=1e-12)
+    np.testing.assert_array_equal(links(pl.place(cylinder, frame)), links(cylinder))
+    np.testing.assert_array_equal(places_around(pl.place(cylinder, frame)), places_around(cylinder))

@@ -1,6 +1,6 @@
 // Control points of a layer as the client knows them: where they rest, where they are, which are chosen or locked.
 
-import { Box3, Matrix4, Vector3 } from "three";
+import { Box3, Matrix4, Quaternion, Vector3 } from "three";
 import type { Frame } from "../transport/frame";
 
 export type Shape = [number, number, number];
@@ -33,6 +33,14 @@ export class ControlPoints {
     const axes = answer.arrays["axes"] as Float64Array;
     this.axes = [0, 1, 2].map((i) => new Vector3(axes[i]!, axes[3 + i]!, axes[6 + i]!));
     this.locked = new Set(answer.arrays["locked"]);
+  }
+
+  /** How the lattice's axes are turned against the world's; null where they are the same. */
+  get turn(): Quaternion | null {
+    const [x, y] = this.axes as [Vector3, Vector3, Vector3];
+    const z = x.clone().cross(y).normalize();
+    const turn = new Quaternion().setFromRotationMatrix(new Matrix4().makeBasis(x, z.clone().cross(x), z));
+    return Math.abs(turn.w) > 1 - 1e-9 ? null : turn;
   }
 
   get count(): number {

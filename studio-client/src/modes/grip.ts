@@ -23,15 +23,15 @@ export class Grip {
   }
 
   /** How far the pointer has moved what it holds; null where it points beside the plane. */
-  moved(pointer: Pointer, axis: number | null, reach: number): Vector3 | null {
+  moved(pointer: Pointer, axis: Vector3 | null, reach: number): Vector3 | null {
     const [from, to] = [this.under(this.from, axis, reach), this.under(pointer, axis, reach)];
     return from && to && to.sub(from);
   }
 
-  private under(pointer: Pointer, axis: number | null, reach: number): Vector3 | null {
+  private under(pointer: Pointer, axis: Vector3 | null, reach: number): Vector3 | null {
     const { ray } = this.viewport.ray(pointer.x, pointer.y);
     if (axis === null) return ray.intersectPlane(this.plane, new Vector3());
-    const along = new Vector3().setComponent(axis, 1e6 * reach);
+    const along = axis.clone().multiplyScalar(1e6 * reach);
     const nearest = new Vector3();
     ray.distanceSqToSegment(this.at.clone().sub(along), this.at.clone().add(along), undefined, nearest);
     return nearest;

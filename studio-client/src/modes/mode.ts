@@ -4,6 +4,7 @@ import type { IconName } from "../core/icons";
 import type { StringKey } from "../core/strings";
 import type { TourStep } from "../panels/tour";
 import type { Studio } from "../studio";
+import type { KeyLine } from "./key_lists";
 
 /** Where the pointer is on the canvas, in CSS pixels from its upper left corner. */
 export interface Pointer {
@@ -23,6 +24,8 @@ export interface Mode {
   readonly title: StringKey;
   readonly hint: StringKey;
   readonly shortcut: string;
+  /** What the help sheet says of it. */
+  readonly shortcuts?: readonly KeyLine[];
   enter(): void;
   leave(): void;
   /** True where the mode takes the pointer, which then does not turn the view. */

@@ -11,6 +11,7 @@ import { Handles } from "../view/handles";
 import { ControlPoints, PointMotion } from "./control_points";
 import { Grip } from "./grip";
 import { LayerDrag } from "./layer_drag";
+import { POINT_KEYS, type KeyLine } from "./key_lists";
 import { registerMode, type Mode, type Pointer } from "./mode";
 import { PointsPanel } from "./points_panel";
 import { SelectionFrame } from "./selection_frame";
@@ -22,6 +23,7 @@ export class PointsMode implements Mode {
   readonly title: StringKey = "modePoints";
   readonly hint: StringKey = "hintPoints";
   readonly shortcut: string = "2";
+  readonly shortcuts: readonly KeyLine[] = POINT_KEYS;
   points: ControlPoints | null = null;
   readonly tools: PointTools;
   protected handles: Handles | null = null;
@@ -132,7 +134,7 @@ export class PointsMode implements Mode {
       if (!grip.dragged(pointer) || !this.points?.selected.size) return;
       this.begin();
     }
-    const by = grip.moved(pointer, this.tools.now.axis, this.tools.diagonal);
+    const by = grip.moved(pointer, this.tools.along, this.tools.diagonal);
     if (by) this.step((motion) => motion.translate(this.tools.restrained(by)));
   }
 
@@ -159,6 +161,7 @@ export class PointsMode implements Mode {
       b: () => this.tools.change({ rectangle: !this.tools.now.rectangle }),
       o: () => this.tools.change({ soft: !this.tools.now.soft }),
       n: () => this.tools.change({ snap: !this.tools.now.snap }),
+      l: () => this.tools.change({ local: !this.tools.now.local }),
       a: () => this.chooseAll(),
       delete: () => void this.remove(),
       backspace: () => void this.remove(),
@@ -284,7 +287,7 @@ export class PointsMode implements Mode {
     this.points = new ControlPoints(layer.name, layer.shape, answer, middle);
     if (before) this.points.keepSelection(before);
     this.handles.load(this.points.now, this.points.links);
-    this.tools.offer(this.takes(this.points), this.points.shape !== null);
+    this.tools.offer(this.takes(this.points), this.points.shape !== null, this.points.turn);
     this.look();
   }
 
@@ -304,7 +307,7 @@ export class PointsMode implements Mode {
     this.moved();
     this.side.follow(points);
     this.drag?.move({}, { index: motion.indices, positions: motion.positions });
-    if (!this.gizmo?.dragging) this.gizmo?.place(this.pivot());
+    if (!this.gizmo?.dragging) this.gizmo?.place(this.pivot(), this.tools.turn);
   }
 
   private async finish(): Promise<void> {
@@ -379,7 +382,7 @@ export class PointsMode implements Mode {
       palette.lattice,
     );
     this.gizmo?.useCamera();
-    this.gizmo?.place(this.pivot());
+    this.gizmo?.place(this.pivot(), this.tools.turn);
     this.selectionChanged();
     this.studio.viewport.request();
   }

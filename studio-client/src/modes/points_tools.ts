@@ -1,6 +1,6 @@
 // How control points are moved: tool, soft selection, mirror, snapping, pivot, the axis that a drag is locked to.
 
-import { Vector3 } from "three";
+import { Quaternion, Vector3 } from "three";
 import { h, replace } from "../core/dom";
 import { Signal } from "../core/signal";
 import { t, tWord } from "../core/strings";
@@ -25,6 +25,8 @@ export interface Tools {
   step: number;
   pivot: Pivot;
   axis: Axis | null;
+  /** Along the axes of the lattice, not of the world. */
+  local: boolean;
   take: Take;
   /** What there is to take. */
   takes: readonly Take[];
@@ -43,10 +45,14 @@ export class PointTools {
     step: 0,
     pivot: "center",
     axis: null,
+    local: false,
     take: "point",
     takes: ["point"],
     letters: ["i", "j", "k"],
   });
+
+  /** From the world's axes to those of the lattice; null where they are the same. */
+  own: Quaternion | null = null;
 
   constructor(private readonly studio: Studio) {}
 
@@ -70,18 +76,33 @@ export class PointTools {
     return this.now.soft ? this.now.radius * this.diagonal : null;
   }
 
+  /** How the axes in use are turned; null where they are the world's. */
+  get turn(): Quaternion | null {
+    return this.now.local ? this.own : null;
+  }
+
+  /** The direction that drags are locked to. */
+  get along(): Vector3 | null {
+    const { axis } = this.now;
+    return axis === null ? null : new Vector3().setComponent(axis, 1).applyQuaternion(this.turn ?? new Quaternion());
+  }
+
   /** A move as the lock and the snapping allow it. */
   restrained(move: Vector3): Vector3 {
     const { axis, snap } = this.now;
-    const kept = axis === null ? move : new Vector3().setComponent(axis, move.getComponent(axis));
-    if (!snap) return kept;
-    return new Vector3(...kept.toArray().map((value) => Math.round(value / this.step) * this.step));
+    const turn = this.turn ?? new Quaternion();
+    const own = move.clone().applyQuaternion(turn.clone().invert());
+    const kept = axis === null ? own : new Vector3().setComponent(axis, own.getComponent(axis));
+    if (snap) kept.set(...(kept.toArray().map((value) => Math.round(value / this.step) * this.step) as [number, number, number]));
+    return kept.applyQuaternion(turn);
   }
 
-  /** What these control points let one take, and what their axes are called. */
-  offer(takes: readonly Take[], boxed: boolean): void {
+  /** What these control points let one take, what their axes are called, and how these are turned. */
+  offer(takes: readonly Take[], boxed: boolean, own: Quaternion | null): void {
+    const turned = (own === null) !== (this.own === null);
+    this.own = own;
     const letters = boxed ? (["i", "j", "k"] as const) : (["x", "y", "z"] as const);
-    if (String(takes) === String(this.now.takes) && letters[0] === this.now.letters[0]) return;
+    if (!turned && String(takes) === String(this.now.takes) && letters[0] === this.now.letters[0]) return;
     this.change({ takes, letters, take: takes.includes(this.now.take) ? this.now.take : "point" });
   }
 
@@ -111,6 +132,7 @@ export class PointTools {
       toggle("soft", `${t("soft")} (O)`, now.soft, (soft) => this.change({ soft })),
       now.soft && this.radiusSlider(),
       toggle("magnet", `${t("snap")} (N)`, now.snap, (snap) => this.change({ snap })),
+      this.own && toggle("axes", `${t("key_local")} (L)`, now.local, (local) => this.change({ local })),
       now.snap && numberField(this.step, (step) => this.change({ step }), { label: t("snapStep"), low: 1e-9, step: this.step }),
       separator(),
       h("span", { class: "toolbar-label" }, t("mirror")),

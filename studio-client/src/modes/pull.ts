@@ -5,6 +5,7 @@ import type { TourStep } from "../panels/tour";
 import type { Studio } from "../studio";
 import { Handles } from "../view/handles";
 import { LayerDrag } from "./layer_drag";
+import { PULL_KEYS } from "./key_lists";
 import { registerMode, type Mode, type Pointer } from "./mode";
 
 class PullMode implements Mode {
@@ -13,6 +14,7 @@ class PullMode implements Mode {
   readonly title = "modePull";
   readonly hint = "hintPull";
   readonly shortcut = "3";
+  readonly shortcuts = PULL_KEYS;
   private handles: Handles | null = null;
   private drag: LayerDrag | null = null;
   private plane = new Plane();

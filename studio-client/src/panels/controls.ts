@@ -47,7 +47,7 @@ export function select<T extends string>(
   onchange: (value: T) => void,
   label = "",
 ): HTMLSelectElement {
-  const element = h("select", { class: "select", "aria-label": label || undefined });
+  const element = h("select", { class: "select", "aria-label": label || undefined, title: label || undefined });
   for (const [key, text] of choices) element.append(h("option", { value: key }, text));
   element.value = value;
   element.addEventListener("change", () => onchange(element.value as T));

@@ -13,7 +13,7 @@ const PATCHES = [4, 7, 10, 13] as const; // control points along patches that sh
 
 export function newExtended(studio: Studio): void {
   if (!studio.scene?.mesh) return;
-  const choice = { kind: "cylinder" as Kind, axis: "z", shape: [8, 4, 4], margin: 0.05, part: "" };
+  const choice = { kind: "cylinder" as Kind, axis: studio.settings.now.up as string, shape: [8, 4, 4], margin: 0.05, part: "" };
   const counts = h("div", { class: "form" });
   const told = h("p", { class: "muted" });
   const latest = new Latest<null>(async () => {
@@ -50,7 +50,7 @@ export function newExtended(studio: Studio): void {
     "div",
     { class: "form" },
     row(t("roundKind"), segments<Kind>([["cylinder", t("cylinder")], ["prism", t("prism")], ["sphere", t("sphere")]], choice.kind, setKind)),
-    row(t("axis"), segments([["x", "x"], ["y", "y"], ["z", "z"]], "z", (axis) => change({ axis }))),
+    row(t("axis"), segments([["x", "x"], ["y", "y"], ["z", "z"]], choice.axis, (axis) => change({ axis }))),
     counts,
     parts.length > 0 &&
       row(

@@ -47,12 +47,14 @@ export class Gizmo {
     this.controls.setScaleSnap(step === null ? null : 0.1);
   }
 
-  place(at: Vector3 | null): void {
+  /** To a place, along axes of its own or those of the world. */
+  place(at: Vector3 | null, turn: Quaternion | null = null): void {
     if (this.controls.dragging) return;
     if (at === null) this.controls.detach();
     else {
       this.anchor.position.copy(at);
-      this.anchor.quaternion.identity();
+      this.anchor.quaternion.copy(turn ?? new Quaternion());
+      this.controls.setSpace(turn ? "local" : "world");
       this.anchor.scale.setScalar(1);
       this.anchor.updateMatrixWorld();
       this.controls.attach(this.anchor);

@@ -36,7 +36,7 @@ export interface DrawnMesh {
 export class MeshView {
   readonly object = new Group();
   readonly colorMap = new ColorMap();
-  readonly materials = new MaterialSet();
+  readonly materials: MaterialSet;
   private geometry = new BufferGeometry();
   private restGeometry: BufferGeometry | null = null;
   private surface = new Mesh<BufferGeometry, Material | Material[]>();
@@ -50,11 +50,17 @@ export class MeshView {
   private colored = false;
   private parts: DrawnMesh["parts"] = [];
 
-  constructor(private readonly redraw: () => void) {
+  /** A view of a mesh; with `twin`, of the same mesh in the same materials, with points of its own. */
+  constructor(
+    private readonly redraw: () => void,
+    twin?: MeshView,
+  ) {
+    this.materials = twin?.materials ?? new MaterialSet();
     this.wires.renderOrder = 1;
     this.object.add(this.surface, this.wires, this.dots);
     this.wires.visible = this.dots.visible = false;
-    this.materials.onChange = redraw;
+    if (twin) this.copy(twin);
+    else this.materials.onChange = redraw;
   }
 
   /** (n, 3) positions as they are drawn; the first `count` are the mesh's points. */
@@ -106,6 +112,20 @@ export class MeshView {
     this.dots.geometry.setAttribute("position", this.position);
     this.dots.visible = mesh.triangles.length === 0;
     this.dots.frustumCulled = false;
+    this.paint();
+  }
+
+  private copy(twin: MeshView): void {
+    this.count = twin.count;
+    this.twins = twin.twins;
+    this.parts = twin.parts;
+    this.geometry = twin.geometry.clone();
+    this.geometry.deleteAttribute("scalar");
+    this.geometry.deleteAttribute("mark");
+    this.surface.geometry = this.geometry;
+    this.surface.frustumCulled = this.dots.frustumCulled = false;
+    this.dots.geometry.setAttribute("position", this.position);
+    this.dots.visible = twin.dots.visible;
     this.paint();
   }
 

@@ -8,7 +8,9 @@ from numpy.typing import NDArray
 from pliant.deformer import Deformer
 from pliant.errors import PliantError
 from pliant.mesh import Points
+from pliant.scene.keyed import tool_of
 from pliant.space.extended_ffd import ExtendedFFD
+from pliant.studio.modes.placements import to_world
 
 
 def lattice_shape(deformer: Deformer) -> list[int] | None:
@@ -24,7 +26,7 @@ def links(deformer: Deformer) -> NDArray[np.uint32]:
     """(e, 2) control points that are joined by a line: neighbours in a lattice, edges of a cage."""
     shape = lattice_shape(deformer)
     if shape is None:
-        return np.asarray(getattr(deformer, "links", np.empty((0, 2))), np.uint32)
+        return np.asarray(getattr(tool_of(deformer), "links", np.empty((0, 2))), np.uint32)
     index = np.arange(int(np.prod(shape)), dtype=np.uint32).reshape(shape)
     found = []
     for axis in range(3):
@@ -38,10 +40,11 @@ def places_around(deformer: Deformer) -> NDArray[np.int32] | None:
 
     None for what is no lattice of one block.
     """
-    if not isinstance(deformer, ExtendedFFD) or len(deformer.blocks) != 1:
+    lattice = tool_of(deformer)
+    if not isinstance(lattice, ExtendedFFD) or len(lattice.blocks) != 1:
         return None
-    index = deformer.blocks[0].index
-    found = np.full((len(deformer.points), 3), -1, np.int32)
+    index = lattice.blocks[0].index
+    found = np.full((len(lattice.points), 3), -1, np.int32)
     for axis, at in enumerate(np.indices(index.shape)):
         least, most = np.full(len(found), index.size), np.full(len(found), -1)
         np.minimum.at(least, index.reshape(-1), at.reshape(-1))
@@ -51,8 +54,9 @@ def places_around(deformer: Deformer) -> NDArray[np.int32] | None:
 
 
 def axes_of(deformer: Deformer) -> Points:
-    """(3, 3) unit columns: the axes along which a lattice's control points stand in rows."""
+    """(3, 3) unit columns: the axes of the world along which a lattice's control points stand in rows."""
     rest = deformer.rest
+    rest = to_world(deformer, rest.reshape(-1, 3)).reshape(rest.shape)
     axes = np.eye(3)
     if rest.ndim == 4:
         for axis in range(3):

@@ -35,6 +35,8 @@ export const CAGE = {
   cageSimple: ["Does not cut itself", "无自相交"],
   cageVolume: ["the shape's volume", "倍体积"],
   compareCoordinates: ["Compare coordinates", "比较坐标"],
+  cageBeside: ["Side by side", "并排比较"],
+  cageBesideToo: ["And beside", "再并排"],
   compareLegend: [
     "Distance from the present shape, in its diagonals, and volume kept. Click one to see where.",
     "与当前形状的距离（占对角线）及保留的体积。点击查看分布。",

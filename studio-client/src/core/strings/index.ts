@@ -6,6 +6,7 @@ import { AXIAL } from "./axial";
 import { CAGE } from "./cage";
 import { COMMON } from "./common";
 import { FACE } from "./face";
+import { KEYS } from "./keys";
 import { MODEL } from "./model";
 import { EXTENDED } from "./extended";
 import { POINTS } from "./points";
@@ -16,7 +17,7 @@ import { SURFACE } from "./surface";
 import { TOUR } from "./tour";
 import { TRANSFER } from "./transfer";
 
-const TABLE = { ...COMMON, ...FACE, ...MODEL, ...AXIAL, ...CAGE, ...EXTENDED, ...POINTS, ...SITES, ...TIME, ...SURFACE, ...TOUR, ...TRANSFER } as const satisfies Strings;
+const TABLE = { ...COMMON, ...KEYS, ...FACE, ...MODEL, ...AXIAL, ...CAGE, ...EXTENDED, ...POINTS, ...SITES, ...TIME, ...SURFACE, ...TOUR, ...TRANSFER } as const satisfies Strings;
 
 export type StringKey = keyof typeof TABLE;
 

@@ -9,6 +9,7 @@ import { GhostLines } from "../../view/ghost_lines";
 import { Handles } from "../../view/handles";
 import { Tags } from "../../view/tags";
 import { LayerDrag } from "../layer_drag";
+import { AXIAL_KEYS } from "../key_lists";
 import { registerMode, type Mode, type Pointer } from "../mode";
 import { axialToolbar } from "./adding";
 import { HandleSet, type Role } from "./handle_set";
@@ -23,6 +24,7 @@ class AxialMode implements Mode {
   readonly title = "modeAxial";
   readonly hint = "hintAxial";
   readonly shortcut = "5";
+  readonly shortcuts = AXIAL_KEYS;
   readonly probe = {
     names: () => this.set?.facts.map((each) => each.name) ?? [],
     screen: (name: string) => this.screen(name),

@@ -29,6 +29,7 @@ export interface CageActions {
   exchange: (kind: string) => void;
   compare: () => void;
   showOther: (kind: string | null) => void;
+  beside: (kinds: string[]) => void;
 }
 
 export class CagePanel {
@@ -37,12 +38,18 @@ export class CagePanel {
   private rows: Row[] = [];
   private other: string | null = null;
   private kind = "mean_value";
+  private beside: string[] = [];
 
   constructor(private readonly actions: CageActions) {}
 
   show(kind: string): void {
     this.kind = kind;
+    if (this.beside.includes(kind)) this.actions.beside((this.beside = this.beside.filter((each) => each !== kind)));
     this.fill();
+  }
+
+  forgetBeside(): void {
+    this.beside = [];
   }
 
   setReport(report: Report | null): void {
@@ -64,8 +71,25 @@ export class CagePanel {
         t("coordinates"),
         select(KINDS.map((kind) => [kind, tWord("coordinates_", kind)] as const), this.kind as "green", (kind) => this.actions.exchange(kind), t("coordinates")),
       ),
+      ...this.sides(),
       h("div", { class: "button-row" }, button(t("compareCoordinates"), this.actions.compare, { icon: "compare" })),
       this.rows.length > 0 && this.comparison(),
+    );
+  }
+
+  /** Which coordinates stand beside the present ones: one, then another one. */
+  private sides(): HTMLElement[] {
+    const choices = (at: number): string[] => KINDS.filter((kind) => kind !== this.kind && kind !== this.beside[1 - at]);
+    const choose = (at: number, kind: string): void => {
+      this.beside = [...this.beside.slice(0, at), kind, ...this.beside.slice(at + 1)].filter((each) => each !== "");
+      this.actions.beside(this.beside);
+      this.fill();
+    };
+    return (["cageBeside", "cageBesideToo"] as const).slice(0, this.beside.length + 1).map((key, at) =>
+      row(
+        t(key),
+        select([["", t("mirrorOff")], ...choices(at).map((kind) => [kind, tWord("coordinates_", kind)] as [string, string])], this.beside[at] ?? "", (kind) => choose(at, kind), t(key)),
+      ),
     );
   }
 

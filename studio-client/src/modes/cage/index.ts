@@ -8,9 +8,11 @@ import type { Studio } from "../../studio";
 import type { Layer } from "../../transport/protocol";
 import { CageFaces } from "../../view/cage_faces";
 import type { ControlPoints } from "../control_points";
+import { CAGE_KEYS } from "../key_lists";
 import { registerMode, type Pointer } from "../mode";
 import { PointsMode } from "../points";
 import type { Take } from "../points_tools";
+import { Beside } from "./beside";
 import { BuildPanel } from "./build_panel";
 import { CagePanel, type Report, type Row } from "./cage_panel";
 import { pickEdge } from "./edge_picking";
@@ -24,11 +26,13 @@ class CageMode extends PointsMode {
   override readonly title: StringKey = "modeCage";
   override readonly hint: StringKey = "hintCage";
   override readonly shortcut = "7";
+  override readonly shortcuts = CAGE_KEYS;
   readonly probe = {
     screen: (index: number) => this.onPage(index),
     count: () => this.points?.count ?? 0,
     selected: () => [...(this.points?.selected ?? [])].sort((a, b) => a - b),
     cuts: () => this.plans.now.cuts,
+    beside: (kind: string, vertex: number) => [...(this.beside.view(kind)?.mesh.positions.slice(3 * vertex, 3 * vertex + 3) ?? [])],
   };
   private readonly plans = new Plans();
   private readonly build = new BuildPanel(this.plans, { build: () => void this.start() });
@@ -36,8 +40,10 @@ class CageMode extends PointsMode {
     exchange: (coordinates) => void this.studio.ask("cage.coordinates", { layer: this.points?.layer ?? "", coordinates }),
     compare: () => void this.compare(),
     showOther: (kind) => void this.showOther(kind),
+    beside: (kinds) => this.beside.choose(kinds),
   });
   private readonly planes: Planes;
+  private readonly beside: Beside;
   private readonly body = h("div");
   private faces: CageFaces | null = null;
   private loaded = "";
@@ -47,6 +53,7 @@ class CageMode extends PointsMode {
   constructor(studio: Studio) {
     super(studio);
     this.planes = new Planes(studio, this.plans, (message) => this.build.tell(message));
+    this.beside = new Beside(studio);
     studio.session.on("cage-report", ({ head }) => {
       if (head["layer"] === this.points?.layer) this.facts.setReport(head["report"] as Report);
     });
@@ -62,6 +69,7 @@ class CageMode extends PointsMode {
     this.faces = new CageFaces(studio.viewport);
     this.loaded = "";
     this.planes.enter();
+    this.beside.enter();
     const other = studio.scene?.layers.findLast((layer) => layer.kind === "cage");
     if (other && studio.layer?.kind !== "cage") studio.activeLayer.set(other.name);
     this.ends = [
@@ -77,6 +85,8 @@ class CageMode extends PointsMode {
     this.faces?.dispose();
     this.faces = null;
     this.planes.leave();
+    this.beside.leave();
+    this.facts.forgetBeside();
     this.studio.paint.set(null);
     super.leave();
   }
@@ -141,6 +151,7 @@ class CageMode extends PointsMode {
       this.planes.show(points === null);
       void this.fetch(points);
     }
+    this.beside.show(points);
     if (points) faces?.move(points.now);
     faces?.setColors(studio.palette.lattice, studio.palette.selected);
     faces?.mark(points?.selected ?? new Set());
@@ -148,6 +159,7 @@ class CageMode extends PointsMode {
 
   protected override moved(): void {
     if (this.points) this.faces?.move(this.points.now);
+    this.beside.move();
   }
 
   private get drawsPlanes(): boolean {

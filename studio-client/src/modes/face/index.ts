@@ -5,6 +5,7 @@ import type { Studio } from "../../studio";
 import { Latest } from "../../transport/latest";
 import type { Layer } from "../../transport/protocol";
 import { Dots } from "../../view/dots";
+import { FACE_KEYS } from "../key_lists";
 import { registerMode, type Mode } from "../mode";
 import { FacePanel, type FaceFacts } from "./panel";
 import { faceTour } from "./tour";
@@ -17,6 +18,7 @@ class FaceMode implements Mode {
   readonly title = "modeFace";
   readonly hint = "hintFace";
   readonly shortcut = "h";
+  readonly shortcuts = FACE_KEYS;
   readonly tour = faceTour;
   readonly probe = {
     landmark: (index: number) => [...(this.landmarks?.slice(3 * index, 3 * index + 3) ?? [])],

@@ -8,6 +8,7 @@ import { Latest } from "../../transport/latest";
 import type { Numbers } from "../../transport/frame";
 import type { Layer } from "../../transport/protocol";
 import { LayerDrag } from "../layer_drag";
+import { MODEL_KEYS } from "../key_lists";
 import { registerMode, type Mode, type Pointer } from "../mode";
 import { ModelPanel } from "./panel";
 import { ModelState } from "./model_state";
@@ -36,6 +37,7 @@ class ModelMode implements Mode {
   readonly title = "modeModel";
   readonly hint = "hintModel";
   readonly shortcut = "m";
+  readonly shortcuts = MODEL_KEYS;
   readonly tour = modelTour;
   readonly probe = {
     landmarks: () => [...(this.model?.vertices ?? [])],

@@ -10,6 +10,7 @@ import { Handles } from "../../view/handles";
 import { listenClicks } from "../click";
 import type { ControlPoints } from "../control_points";
 import { Influence } from "../influence";
+import { SITE_KEYS } from "../key_lists";
 import { registerMode } from "../mode";
 import { PointsMode } from "../points";
 import { SitesPanel } from "./panel";
@@ -23,6 +24,7 @@ class SitesMode extends PointsMode {
   override readonly title: StringKey = "modeSites";
   override readonly hint: StringKey = "hintSites";
   override readonly shortcut = "6";
+  override readonly shortcuts = SITE_KEYS;
   readonly probe = {
     screen: (index: number) => this.onPage(index),
     count: () => this.points?.count ?? this.waiting.length / 3,

@@ -4,6 +4,7 @@
 import { MOUSE, type Box3, type Vector3 } from "three";
 import type { Studio } from "../../studio";
 import type { Taker } from "../input";
+import { SURFACE_KEYS } from "../key_lists";
 import { registerMode, type Mode, type Pointer } from "../mode";
 import { Chosen } from "./chosen";
 import { Convergence } from "./convergence";
@@ -22,6 +23,7 @@ export class SurfaceMode implements Mode {
   readonly title = "modeSurface";
   readonly hint = "hintSurface";
   readonly shortcut = "4";
+  readonly shortcuts = SURFACE_KEYS;
   readonly tour = surfaceTour;
   private readonly tools = new SurfaceToolbar();
   private readonly chosen: Chosen;

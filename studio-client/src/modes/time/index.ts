@@ -4,6 +4,7 @@ import type { TourStep } from "../../panels/tour";
 import { openExport } from "../../panels/export_dialog";
 import { openTemplates } from "../../panels/templates/gallery";
 import type { Studio } from "../../studio";
+import { TIME_KEYS } from "../key_lists";
 import { registerMode, type Mode, type Probe } from "../mode";
 import { ClipModel } from "./clip_model";
 import { Dock } from "./dock";
@@ -19,6 +20,7 @@ class TimeMode implements Mode {
   readonly title = "modeTime";
   readonly hint = "hintTime";
   readonly shortcut = "t";
+  readonly shortcuts = TIME_KEYS;
   private readonly model: ClipModel;
   private readonly keys: KeyPanel;
   private readonly timeline: Dock;

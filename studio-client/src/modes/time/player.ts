@@ -1,5 +1,6 @@
 // The playhead, and playing: by the clock, with the frames that the server has sent kept, so that a motion that was
-// played once plays without it. Where the server is slower than the clock, frames are left out; the pace is kept.
+// played once plays without it. Moments to come are asked for ahead of the clock, as early as answers take; where the
+// server is slower than the clock, frames are left out; the pace is kept.
 
 import { Signal } from "../../core/signal";
 import { Latest } from "../../transport/latest";
@@ -7,6 +8,7 @@ import type { Frame } from "../../transport/frame";
 import type { ClipState } from "../../transport/protocol";
 import type { Studio } from "../../studio";
 import { widened } from "../layer_drag";
+import { ReadAhead } from "./read_ahead";
 
 const ROOM = 256 * 2 ** 20; // bytes of frames that are kept
 
@@ -24,6 +26,13 @@ export class Player {
   private state = "";
   private near = false; // what is shown is not what the session has told
   private shown: number[] = [];
+  private now = -1; // the frame that was shown last while playing
+  private readonly ahead = new ReadAhead(
+    (count) => this.moment(count / this.fps),
+    (frame) => this.has(frame),
+    (frame) => this.frame(frame / this.fps),
+    (answer) => this.draw(answer),
+  );
 
   constructor(private readonly studio: Studio) {
     studio.session.scene.onChange(() => this.follow());
@@ -33,13 +42,17 @@ export class Player {
     return this.studio.scene?.clip ?? null;
   }
 
+  private get fps(): number {
+    return this.clip?.fps ?? 24;
+  }
+
   /** Whether a moment plays without the server. */
   has(frame: number): boolean {
     return this.frames.has(frame);
   }
 
   frameAt(time: number): number {
-    return Math.round(time * (this.clip?.fps ?? 24));
+    return Math.round(time * this.fps);
   }
 
   /** Show a moment while somebody scrubs; `settle` ends that. */
@@ -64,8 +77,7 @@ export class Player {
   }
 
   step(by: number): Promise<void> {
-    const fps = this.clip?.fps ?? 24;
-    return this.goto((this.frameAt(this.time.value) + by) / fps);
+    return this.goto((this.frameAt(this.time.value) + by) / this.fps);
   }
 
   toggle(): void {
@@ -81,6 +93,8 @@ export class Player {
     this.playing.set(true);
     this.studio.viewport.helpers.visible = false;
     this.shown = [];
+    this.now = -1;
+    this.ahead.begin();
     const began = performance.now() - 1000 * from;
     const tick = (): void => {
       if (!this.playing.value) return;
@@ -94,6 +108,7 @@ export class Player {
   pause(settled = true): void {
     if (!this.playing.value) return;
     this.playing.set(false);
+    this.ahead.end();
     this.pace.set(0);
     this.studio.viewport.helpers.visible = true;
     if (settled) void this.settle();
@@ -104,10 +119,23 @@ export class Player {
     const { clip } = this;
     if (!clip) return false;
     const ended = clip.ending === "once" && elapsed >= clip.duration;
-    const moment = folded(ended ? clip.duration : elapsed, clip);
-    const frame = Math.min(Math.floor(moment * clip.fps + 1e-6), Math.round(clip.duration * clip.fps));
-    if (frame !== this.shown.at(-1)) this.show(frame / clip.fps);
+    const frame = this.moment(ended ? clip.duration : elapsed) ?? 0;
+    if (frame !== this.now) {
+      this.now = frame;
+      this.time.set(frame / clip.fps);
+      this.near = true;
+      const known = this.frames.get(frame);
+      if (known) this.draw(known);
+    }
+    this.ahead.follow(Math.floor(elapsed * clip.fps + 1e-6), clip.fps);
     return !ended;
+  }
+
+  /** The frame that is shown some seconds after the beginning; null where the clip has ended. */
+  private moment(elapsed: number): number | null {
+    const { clip } = this;
+    if (!clip || (clip.ending === "once" && elapsed > clip.duration + 1e-6)) return null;
+    return Math.min(Math.floor(folded(elapsed, clip) * clip.fps + 1e-6), Math.round(clip.duration * clip.fps));
   }
 
   private show(time: number): void {
@@ -150,7 +178,7 @@ export class Player {
 
   /** The frame that a time is, if it is one. */
   private onFrame(time: number): number | null {
-    const { fps } = this.clip ?? { fps: 24 };
+    const { fps } = this;
     const frame = Math.round(time * fps);
     return Math.abs(frame / fps - time) < 1e-6 ? frame : null;
   }

@@ -11,6 +11,7 @@ import type { Numbers } from "../../transport/frame";
 import { onClick } from "../../view/clicks";
 import { MeshView } from "../../view/mesh_view";
 import { SideView } from "../../view/side_view";
+import { TRANSFER_KEYS } from "../key_lists";
 import { registerMode, type Mode, type Pointer } from "../mode";
 import { TransferPanel, type Keys } from "./panel";
 import { Player } from "./player";
@@ -24,6 +25,7 @@ class TransferMode implements Mode {
   readonly title = "modeTransfer";
   readonly hint = "hintTransfer";
   readonly shortcut = "8";
+  readonly shortcuts = TRANSFER_KEYS;
   readonly tour = transferTour;
   private state: TransferState = NOTHING;
   private keys: Keys | null = null;
