@@ -13,12 +13,10 @@ import sys
 import traceback
 from pathlib import Path
 
+from reliability.limits import MEMORY, SECONDS
 from reliability.mutate import mutants
 from reliability.readers import ACCEPTED, attempt
 from reliability.seeds import corpus
-
-MEMORY = 1 << 30  # bytes a mutant may take beside what this process has
-SECONDS = 10  # of the processor: what a busy machine makes of them does not count
 
 
 def main(folder: str) -> None:

@@ -22,13 +22,14 @@ from typing import Any
 
 from reliability.ledger import Ledger, publish
 from reliability.mutate import mutants
-from reliability.readers import IN_A_PROCESS, attempt
+from reliability.readers import FORKED, IN_A_PROCESS, attempt
 from reliability.seeds import corpus
 
 SECONDS = 60  # after which a child that says nothing hangs; it counts the seconds of the processor itself
 STARTING = 300  # seconds in which a child has imported and compiled what it needs
 SLICE = 200
 SHARE = 50  # a format that is read in a process of its own gets so many times fewer mutants
+FEWER = 3  # and so many times fewer, where that process is forked
 
 
 @dataclass
@@ -110,9 +111,15 @@ class Child:
 def plan(count: int) -> dict[str, int]:
     """How many mutants each seed gets."""
     names = list(corpus())
-    weights = {name: 1 / SHARE if name.endswith(IN_A_PROCESS) else 1.0 for name in names}
+    weights = {name: 1 / _share(name) for name in names}
     total = sum(weights.values())
     return {name: max(4, -(-int(count * weight) // int(total))) for name, weight in weights.items()}
+
+
+def _share(name: str) -> int:
+    if name.endswith(FORKED):
+        return FEWER
+    return SHARE if name.endswith(IN_A_PROCESS) else 1
 
 
 def run(count: int, ledger: Ledger, seconds: float, only: str = "") -> None:
