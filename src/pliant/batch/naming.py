@@ -95,6 +95,6 @@ def _places() -> Callable[[Path], str]:
     resolved = cache(Path.resolve)
 
     def place(path: Path) -> str:
-        return os.path.normcase(resolved(path.parent) / path.name)
+        return str(os.path.normcase(resolved(path.parent) / path.name))
 
     return place

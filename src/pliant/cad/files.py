@@ -8,18 +8,23 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
+import orjson
+
+from pliant.cad.document_writing import document_of
 from pliant.cad.kernel import kernel
+from pliant.cad.labels import Label, kind_of, labels_of
 from pliant.cad.part import Part
 from pliant.errors import UnreadableFile, UnsupportedFormat, UnwritableFile
 from pliant.io.files import read_bytes, replacing
 from pliant.io.mesh_formats.polydata_process import run
+from pliant.io.report import LossReport, refuse_losses
 
 _CURE = "export it again, as STEP AP214 or AP242"
 _STEP, _IGES = (".step", ".stp"), (".iges", ".igs")
 
 
 def read(path: Path | str) -> Part:
-    """Read a part; lengths become millimetres.
+    """Read a part, with its names, colours, layers and assemblies; lengths become millimetres.
 
     Parameters
     ----------
@@ -35,7 +40,7 @@ def read(path: Path | str) -> Part:
     MissingExtra
         Open CASCADE is not installed.
     """
-    of_kind(path, "STEPControl_Reader", "IGESControl_Reader")
+    of_kind(path, "STEPCAFControl_Reader", "IGESCAFControl_Reader")
     read_bytes(path)
     with tempfile.TemporaryDirectory(prefix="pliant-") as folder:
         copy = Path(folder, "part.bin")
@@ -43,11 +48,12 @@ def read(path: Path | str) -> Part:
         shape = kernel("TopoDS").TopoDS_Shape()
         if not kernel("BinTools").BinTools.Read_s(shape, str(copy)):
             raise UnreadableFile(path, "the kernel finds no shape in it", _CURE)
-    return Part(shape)
+        said = orjson.loads(copy.with_name("part.bin.json").read_bytes())
+    return Part(shape, labels_of(said["labels"]), tuple(said["unkept"]))
 
 
-def write(part: Part, path: Path | str) -> None:
-    """Write a part, in millimetres.
+def write(part: Part, path: Path | str, *, strict: bool = False) -> LossReport:
+    """Write a part, in millimetres, with its names, colours, layers and assemblies.
 
     Parameters
     ----------
@@ -55,23 +61,47 @@ def write(part: Part, path: Path | str) -> None:
         What to write.
     path
         Ends in ``.step``, ``.stp``, ``.iges`` or ``.igs``.
+    strict
+        Refuse to write what would lose something.
+
+    Returns
+    -------
+    LossReport
+        What the file that the part was read from says, and this one does not.
 
     Raises
     ------
     UnsupportedFormat
         The ending is neither STEP's nor IGES's.
+    LossRefused
+        Something would be lost, and ``strict`` is set; nothing is written.
     UnwritableFile
         The kernel could not write it.
     """
-    writer = of_kind(path, "STEPControl_Writer", "IGESControl_Writer")
+    writer = of_kind(path, "STEPCAFControl_Writer", "IGESCAFControl_Writer")
+    is_step = Path(path).suffix.lower() in _STEP
+    losses = part.unkept if is_step else (*part.unkept, *_beyond_iges(part.labels))
+    refuse_losses(losses, Path(path), strict=strict)
     with silence(), replacing(path) as temporary:
-        if Path(path).suffix.lower() in _STEP:
-            writer.Transfer(part.shape, kernel("STEPControl").STEPControl_AsIs)
-            done = writer.Write(str(temporary)) == kernel("IFSelect").IFSelect_RetDone
-        else:
-            done = writer.AddShape(part.shape) and writer.Write(str(temporary))
-        if not done:
+        document = document_of(part.shape, part.labels or (Label(kind_of(part.shape), 0, Path(path).stem),))
+        for mode in ("SetNameMode", "SetColorMode", "SetLayerMode"):
+            getattr(writer, mode)(True)
+        kernel("Interface").Interface_Static.SetIVal_s("write.stepcaf.subshapes.name", 1)
+        done = writer.Transfer(document.whole)
+        written = done and writer.Write(str(temporary))
+        if not done or (written != kernel("IFSelect").IFSelect_RetDone if is_step else not written):
             raise UnwritableFile(path, "the kernel refused the part")
+    return LossReport(Path(path), "STEP" if is_step else "IGES", losses)
+
+
+def _beyond_iges(labels: tuple[Label, ...]) -> list[str]:
+    """What IGES has no place for: faces have colours without alpha, layers have numbers."""
+    counts = {
+        "assemblies, as what is mounted into what": sum(label.assembly for label in labels),
+        "transparencies": sum(label.color is not None and label.color[3] < 1 for label in labels),
+        "names of layers, which become numbers": len({layer for label in labels for layer in label.layers}),
+    }
+    return [f"{count:,} {what}" for what, count in counts.items() if count]
 
 
 def of_kind(path: Path | str, step: str, iges: str) -> Any:

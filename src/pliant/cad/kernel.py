@@ -35,3 +35,11 @@ def parts_of(shape: Any, kind: str) -> list[Any]:
         explorer.Next()
     cast = getattr(names, kind.capitalize())
     return [cast(part) for same in found.values() for part in same]
+
+
+def settled(shape: Any) -> Any:
+    """A shape of which each part is where it is without being told, in the same order."""
+    flat = kernel("ShapeUpgrade").ShapeUpgrade_RemoveLocations()
+    flat.SetRemoveLevel(kernel("TopAbs").TopAbs_COMPOUND)  # also from what compounds hold
+    flat.Remove(shape)
+    return flat.GetResult()

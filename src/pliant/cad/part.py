@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from pliant.cad.geometry import Map
 from pliant.cad.joins import kinks
 from pliant.cad.kernel import kernel, parts_of
+from pliant.cad.labels import Label
 from pliant.cad.rebuilding import rebuilt
 from pliant.deformer import SpaceDeformer
 from pliant.errors import InvalidParameter, InvalidTarget, NotConverged
@@ -31,9 +32,15 @@ class Part:
     ----------
     shape
         Open CASCADE's ``TopoDS_Shape``; lengths are millimetres.
+    labels
+        What is said of shapes in it: names, colours, layers, which compounds are assemblies. A deformation keeps them.
+    unkept
+        What the file that it was read from says beside that, one sentence each.
     """
 
     shape: Any
+    labels: tuple[Label, ...] = ()
+    unkept: tuple[str, ...] = ()
 
     def deformed(self, deformer: SpaceDeformer | Stack, *, tolerance: float | None = None, angle: float = 1e-3) -> Part:
         """The part after a deformation: its faces are B-spline surfaces that share their edges as before.
@@ -68,7 +75,7 @@ class Part:
             raise InvalidParameter(f"the angle is {angle}; it must be {_SMOOTH:g} or more, in radians")
         found = self._smoothly(lambda points: np.asarray(deformer(points)), allowed, angle)
         if self.volume > 0 > found.volume:
-            found = Part(found.shape.Reversed())  # a mirror turned it inside out
+            found = replace(found, shape=found.shape.Reversed())  # a mirror turned it inside out
         if self.valid and not found.valid:
             raise NotConverged("the deformed part is no valid solid: lower the tolerance, or see whether the map folds")
         return found
@@ -77,7 +84,7 @@ class Part:
         """The part deformed ever more exactly, until faces that met smoothly do."""
         smooth = self.kinks <= _SMOOTH
         for _ in range(_ROUNDS):
-            found = Part(rebuilt(self.shape, move, tolerance))
+            found = replace(self, shape=rebuilt(self.shape, move, tolerance))
             if found.kinks[smooth].max(initial=0.0) <= angle:
                 return found
             tolerance /= 4

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from pliant.cad.geometry import Map, deformed_curve, deformed_surface, moved_point
-from pliant.cad.kernel import kernel, parts_of
+from pliant.cad.kernel import kernel, parts_of, settled
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,9 +55,7 @@ def rebuilt(shape: Any, move: Map, tolerance: float) -> Any:
 def _own(shape: Any) -> Any:
     """A copy that shares nothing, each part where it is without being told."""
     copy = kernel("BRepBuilderAPI").BRepBuilderAPI_Copy(shape).Shape()
-    flat = kernel("ShapeUpgrade").ShapeUpgrade_RemoveLocations()
-    flat.Remove(copy)
-    found = flat.GetResult()
+    found = settled(copy)
     kernel("BRepLib").BRepLib.BuildCurves3d_s(found)
     kernel("BRepTools").BRepTools.Clean_s(found)
     return found

@@ -71,7 +71,7 @@ def deform(
     )
     with Session(json=json, quiet=quiet) as session:
         if is_part(mesh):
-            deform_part(session, mesh, output, choice.required, tolerance)
+            deform_part(session, mesh, output, choice.required, tolerance, strict=strict)
         else:
             deform_file(session, mesh, output, choice, strict=strict)
 

@@ -36,6 +36,8 @@ def deform_part(
     output: Path,
     chosen: Callable[[PolygonMesh], SpaceDeformer | Stack],
     tolerance: float | None,
+    *,
+    strict: bool = False,
 ) -> None:
     """Read a part, deform its surfaces, and write a part, or the triangles of one."""
     from pliant.cad import read, write
@@ -45,10 +47,12 @@ def deform_part(
     with session.patience():
         moved = part.deformed(chosen(part.mesh()), tolerance=tolerance)
     if is_part(output):
-        write(moved, output)
+        report = write(moved, output, strict=strict)
+        for loss in report.losses:
+            session.warn(f"{output} does not hold: {loss}")
         session.say(f"wrote {output}: {moved}")
     else:
-        write_mesh(session, moved.mesh(), output)
+        write_mesh(session, moved.mesh(), output, strict=strict)
     session.result(input=path, output=output, volume=moved.volume, gap=moved.gap, valid=moved.valid)
 
 

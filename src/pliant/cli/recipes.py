@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from enum import StrEnum
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any
 
@@ -58,7 +59,8 @@ def apply(
     """Deform a mesh, or a part from CAD, by a recipe, a project or a template."""
     with Session(json=json, quiet=quiet) as session:
         if is_part(mesh):
-            deform_part(session, mesh, output, lambda shape: _stack(recipe, shape, intensity, up), tolerance)
+            choice = partial(_stack, recipe, intensity=intensity, up=up)  # for the part's own mesh
+            deform_part(session, mesh, output, choice, tolerance, strict=strict)
             return
         import numpy as np
 
