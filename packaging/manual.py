@@ -20,7 +20,8 @@ from mkdocs.config import load_config
 
 ROOT = Path(__file__).parents[1]
 STYLE = """
-@page { size: A4; margin: 18mm 16mm; }
+@page { size: A4; margin: 18mm 16mm; @bottom-center { content: counter(page); font: 8.5pt sans-serif; } }
+@page :first { @bottom-center { content: none; } }
 body { font: 10.5pt/1.45 "Noto Serif", "DejaVu Serif", serif; color: #222; }
 h1 { break-before: page; font-size: 21pt; border-bottom: 2px solid #d98a1f; padding-bottom: 4pt; }
 h1, h2, h3, h4, th { font-family: "Noto Sans", "DejaVu Sans", sans-serif; break-after: avoid; }
@@ -29,11 +30,12 @@ pre, code { font: 8.5pt/1.35 "DejaVu Sans Mono", monospace; }
 pre { background: #f5f3ee; padding: 6pt 8pt; border-radius: 3pt; white-space: pre-wrap; overflow-wrap: anywhere; }
 table { border-collapse: collapse; font-size: 8.5pt; width: 100%; }
 th, td { border-bottom: 1px solid #ccc; text-align: left; vertical-align: top; padding: 2pt 4pt; }
-td { overflow-wrap: anywhere; }
+td { overflow-wrap: anywhere; } td:first-child, .doc-param-default { overflow-wrap: normal; }
 a { color: inherit; text-decoration: none; }
-.headerlink, .md-content__button, .md-source-file { display: none; }
+.headerlink, .md-content__button, .md-source-file, video { display: none; }
 .gallery { display: grid; grid-template-columns: repeat(3, 1fr); gap: 6pt; } .gallery figure { margin: 0; }
 .title { text-align: center; padding-top: 60mm; } .title h1 { break-before: auto; border: 0; font-size: 44pt; }
+.contents { columns: 2; } .contents p { margin: 2pt 0 2pt 12pt; } .contents h4 { margin: 8pt 0 2pt; }
 """
 
 
@@ -51,7 +53,8 @@ def main() -> None:
         page.write_text(whole(site, list(in_order(config["nav"], site))), encoding="utf-8")
         target = out / "pliant-manual.pdf"
         command = [browser, "--headless", "--no-sandbox", "--disable-gpu", "--no-pdf-header-footer"]
-        command += ["--virtual-time-budget=60000", f"--print-to-pdf={target}", page.as_uri()]
+        command += ["--virtual-time-budget=60000", "--generate-pdf-document-outline"]
+        command += [f"--print-to-pdf={target}", page.as_uri()]
         subprocess.run(command, check=True, capture_output=True, timeout=600)
     print(f"{target}: {target.stat().st_size / 2**20:.1f} MB, {pages(target)} pages")
 
@@ -77,14 +80,37 @@ def whole(site: Path, paths: list[Path]) -> str:
     cover = (
         f'<div class="title"><h1>pliant</h1><p>Control many points with few.</p><p>Manual, version {version}</p></div>'
     )
+    articles = [(path, article(path, site)) for path in paths]
     parts = [f'<!doctype html><html lang="en"><meta charset="utf-8"><style>{STYLE}</style><title>pliant</title>', cover]
-    for path in paths:
-        found = re.search(r"<article.*?>(.*?)</article>", path.read_text(encoding="utf-8"), flags=re.S)
-        if found:
-            parts.append(
-                re.sub(r'(src=")(?!data:|https?:)([^"]+)', lambda m, p=path: m[1] + seen(p, m[2], site), found[1])
-            )
+    parts.append(contents(articles, site))
+    parts += [f'<section id="{name(path, site)}">{text}</section>' for path, text in articles]
     return "\n".join(parts)
+
+
+def article(path: Path, site: Path) -> str:
+    """What a page says, without the site around it."""
+    found = re.search(r"<article.*?>(.*?)</article>", path.read_text(encoding="utf-8"), flags=re.S)
+    text = found[1] if found else ""
+    return re.sub(r'(src=")(?!data:|https?:)([^"]+)', lambda m: m[1] + seen(path, m[2], site), text)
+
+
+def contents(articles: list[tuple[Path, str]], site: Path) -> str:
+    """The titles of all pages, folder by folder, each a link."""
+    lines, folder = ["<h1>Contents</h1>", '<div class="contents">'], ""
+    for path, text in articles:
+        title = re.search(r"<h1[^>]*>(.*?)(?:<a |</h1>)", text, flags=re.S)
+        here = path.parent.relative_to(site).as_posix()
+        if here != folder:
+            folder = here
+            lines.append(f"<h4>{'' if here == '.' else here.replace('/', ', ').capitalize()}</h4>")
+        if title:
+            lines.append(f'<p><a href="#{name(path, site)}">{re.sub("<.*?>", "", title[1])}</a></p>')
+    return "\n".join([*lines, "</div>"])
+
+
+def name(path: Path, site: Path) -> str:
+    """What links call a page's section."""
+    return path.relative_to(site).with_suffix("").as_posix().replace("/", "-")
 
 
 def seen(page: Path, link: str, site: Path) -> str:
