@@ -159,3 +159,34 @@ def test_requests_for_cages_that_make_no_sense_are_refused():
         ):
             assert word in page.refused(session, command, values)["message"], command
         assert "six numbers" in page.refused(session, "cage.sketch", {}, cuts=np.zeros(9))["message"]
+
+
+def test_other_coordinates_beside_follow_a_drag_as_the_library_says():
+    scene = caged(EGG)
+    cage = scene.stack["Cage"].deformer
+    with session_on(scene, "egg") as (session, page):
+        values = {"layer": "Cage", "coordinates": "green"}
+        assert not page.ask(session, "cage.beside_at", values).arrays  # not computed yet
+        session.submit(page.ask, session, "cage.beside", values).result()
+        waited(session, lambda: page.events("cage-beside"))
+
+        def beside(moved):
+            shown = session.submit(page.ask, session, "cage.beside_at", values).result().arrays
+            expected = replace(cage, coordinates="green").moved(moved)(EGG)
+            np.testing.assert_allclose(shown["positions"].reshape(-1, 3), expected.points, atol=1e-6)
+            assert len(shown["normals"]) == 3 * len(EGG.points)
+
+        beside(cage.controls)
+        session.submit(page.ask, session, "drag.begin", {"layer": "Cage"}).result()
+        moved = np.array(cage.controls)
+        moved[5] += [0.3, -0.2, 0.1]
+        index = np.array([5], np.uint32)
+        session.submit(lambda: page.ask(session, "drag.move", {}, index=index, positions=moved[5])).result()
+        beside(moved)
+        assert session.scene is scene  # while the drag lasts
+        session.submit(page.ask, session, "drag.cancel", {}).result()
+        beside(cage.controls)
+        other = pl.Cage(pl.cage_from_box(EGG, (1, 1, 1)))
+        stack = scene.stack.replace("Cage", deformer=other)
+        session.submit(session.commit, scene.replace(stack=stack), "cage").result()
+        assert not page.ask(session, "cage.beside_at", values).arrays  # those of another cage

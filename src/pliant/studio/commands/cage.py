@@ -14,6 +14,7 @@ from pliant.mesh import Points, PolygonMesh
 from pliant.rendering.palette import SEQUENTIAL, color_table
 from pliant.scene.scene import Scene
 from pliant.scene.stack import Stack
+from pliant.scene.stack_binding import StackBinding
 from pliant.space.cage import Cage
 from pliant.space.coordinates.kinds import KINDS
 from pliant.studio.jobs import Job
@@ -24,7 +25,7 @@ from pliant.studio.serving.frames import Frame
 from pliant.studio.session import Session
 
 MOST_VERTICES = 5000
-_KEPT = "cage-comparison"
+_KEPT, _BESIDE = "cage-comparison", "cage-beside"
 
 
 @command("cage.get", reads=True)
@@ -139,6 +140,40 @@ def other(session: Session, request: Request) -> Frame:
         "table": np.rint(255 * color_table(SEQUENTIAL)).astype(np.uint8),
     }
     return Frame({"high": float(away.max(initial=0.0))}, arrays)
+
+
+@command("cage.beside")
+def beside(session: Session, request: Request) -> None:
+    """Compute other coordinates, to be shown beside the present ones; pages are told when they are there."""
+    scene, name, kind = session.required, request.text("layer"), _kind(request)
+    cage, binding = _cage(scene.stack, name), session.shown.binding
+    stack = scene.stack.replace(name, deformer=replace(cage, coordinates=kind))
+
+    def done(found: StackBinding) -> None:
+        if session.scene is scene:
+            session.beside.setdefault(_BESIDE, {})[name, kind] = found
+            session.broadcast(Frame({"event": "cage-beside", "layer": name, "coordinates": kind}))
+
+    session.jobs.run(name, lambda _: binding.updated(stack), done)
+
+
+@command("cage.beside_at")
+def beside_at(session: Session, request: Request) -> Frame:
+    """The shape under other coordinates, in the pose of the present drag; nothing while they are computed."""
+    name, kind, kept = request.text("layer"), _kind(request), session.beside.get(_BESIDE, {})
+    stack = session.required.stack if session.dragging is None else session.dragging.stack
+    cage, found = _cage(stack, name), kept.get((name, kind))
+    if found is None or not _alike(known := found.stack[name].deformer, cage):
+        return Frame()
+    kept[name, kind] = found = found.updated(stack.replace(name, deformer=known.moved(cage.controls)))
+    arrays = {"positions": found.result.astype(np.float32), "normals": session.shown.drawn.normals(found.result)}
+    return Frame({}, arrays)
+
+
+def _alike(one: Cage, other: Cage) -> bool:
+    """Whether two cages differ in their coordinates and their pose at most."""
+    names = ("outside", "levels", "precision", "threshold")
+    return one.mesh is other.mesh and all(getattr(one, name) == getattr(other, name) for name in names)
 
 
 def _plan(request: Request) -> Plan:

@@ -15,7 +15,6 @@ export class Beside {
   private others: Other[] = [];
   private points: ControlPoints | null = null;
   private kinds: string[] = [];
-  private now = "";
   private readonly title = h("span", { class: "side-title" });
   private stops: (() => void)[] = [];
 
@@ -24,7 +23,7 @@ export class Beside {
   enter(): void {
     const { session, pointsMoved, meshLoaded, settings } = this.studio;
     this.stops = [
-      session.scene.onChange(() => this.others.forEach((each) => each.bind())),
+      session.scene.onChange(() => this.others.forEach((each) => each.follow(true))),
       pointsMoved.onChange(() => this.others.forEach((each) => each.follow())),
       meshLoaded.onChange(() => this.place()),
       settings.all.onChange(() => this.others.forEach((each) => each.paint())),
@@ -48,12 +47,15 @@ export class Beside {
     this.place();
   }
 
-  /** The cage that they belong to, and its own coordinates. */
-  show(points: ControlPoints | null, now = this.now): void {
+  /** What the coordinates of the cage itself are. */
+  name(kind: string): void {
+    this.title.textContent = tWord("coordinates_", kind);
+  }
+
+  /** The cage that they belong to. */
+  show(points: ControlPoints | null): void {
     const other = points?.layer !== this.points?.layer || points?.count !== this.points?.count;
     this.points = points;
-    this.now = now;
-    this.title.textContent = tWord("coordinates_", now);
     if (other) this.place();
     else this.move();
   }
@@ -83,6 +85,7 @@ export class Other {
   private readonly layer: string;
   private readonly latest = new Latest<null>(() => this.fetch());
   private closed = false;
+  private asked = false;
 
   constructor(
     private readonly studio: Studio,
@@ -99,20 +102,17 @@ export class Other {
     this.handles = new Handles(viewport);
     this.handles.load(points.now, points.links);
     this.paint();
-    this.bind();
+    this.follow();
   }
 
-  /** Have the coordinates computed, in the background. */
-  bind(): void {
-    void this.studio.ask("cage.beside", { layer: this.layer, coordinates: this.kind });
-  }
-
-  /** They have been computed. */
+  /** The coordinates have been computed. */
   told(head: Record<string, unknown>): void {
     if (head["coordinates"] === this.kind && head["layer"] === this.layer) this.follow();
   }
 
-  follow(): void {
+  /** Show the present pose; in another scene, coordinates that are not there yet are computed. */
+  follow(again = false): void {
+    if (again) this.asked = false;
     this.latest.push(null);
   }
 
@@ -136,8 +136,14 @@ export class Other {
   }
 
   private async fetch(): Promise<void> {
-    const answer = await this.studio.ask("cage.beside_at", { layer: this.layer, coordinates: this.kind });
-    if (this.closed || !answer?.arrays["positions"]) return;
-    this.mesh.move(null, answer.arrays["positions"], answer.arrays["normals"]!);
+    const which = { layer: this.layer, coordinates: this.kind };
+    const answer = await this.studio.ask("cage.beside_at", which);
+    if (this.closed || !answer) return;
+    const { positions, normals } = answer.arrays;
+    if (positions?.length === 3 * this.mesh.pointCount) this.mesh.move(null, positions, normals!);
+    else if (!this.asked) {
+      this.asked = true;
+      await this.studio.ask("cage.beside", which);
+    }
   }
 }

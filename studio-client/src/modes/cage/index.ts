@@ -190,7 +190,7 @@ class CageMode extends PointsMode {
     this.facts.setReport(null);
     const answer = await this.studio.ask("cage.get", { layer: points.layer });
     if (!answer || points.layer !== this.points?.layer) return;
-    this.facts.show(answer.head["coordinates"] as string);
+    this.call(answer.head["coordinates"] as string);
     const { faces, offsets } = answer.arrays;
     this.faces?.load({ corners: faces as Uint32Array, offsets: offsets as Uint32Array }, this.points.now);
     this.look();
@@ -224,8 +224,14 @@ class CageMode extends PointsMode {
     );
   }
 
+  /** Which coordinates the cage has. */
+  private call(kind: string): void {
+    this.facts.show(kind);
+    this.beside.name(kind);
+  }
+
   private forgetComparison(): void {
-    this.facts.show(String(this.studio.layer?.fields.find((field) => field.name === "coordinates")?.value ?? "mean_value"));
+    this.call(String(this.studio.layer?.fields.find((field) => field.name === "coordinates")?.value ?? "mean_value"));
     if (!this.rows.length) return;
     this.rows = [];
     this.facts.setRows([], null);
