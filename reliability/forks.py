@@ -56,8 +56,7 @@ def run(path: Path, out: Path, _: str, *, child: str, reader: str, name: Path | 
 def _server() -> subprocess.Popen[bytes]:
     command = [sys.executable, "-m", "reliability.forks"]
     server = subprocess.Popen(command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
-    assert server.stdin is not None
-    atexit.register(server.stdin.close)
+    atexit.register(server.communicate)  # it ends with its input
     return server
 
 
