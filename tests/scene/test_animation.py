@@ -201,6 +201,39 @@ def test_alembic_winds_polygons_the_other_way(moving, tmp_path):
     assert all(np.array_equal(row[::-1], face) for row, face in zip(rows, MESH.faces, strict=True))
 
 
+def test_alembic_keeps_texture_coordinates_and_normals(tmp_path):
+    from alembic3d import Abc, AbcGeom
+
+    random = np.random.default_rng(5)
+    corners = len(MESH.faces.flat)
+    uvs = CornerValues(random.random((9, 2)), random.integers(0, 9, corners).astype(np.int32))
+    normals = CornerValues(polygon_normals(MESH.points, MESH.faces), MESH.faces.row_of.astype(np.int32))
+    for mesh in (MESH.replace(uvs=uvs, normals=normals), MESH.replace(vertex_attributes={"normals": MESH.points})):
+        clip = pl.Clip(mesh, mixed_stack(), duration=0.5, fps=4).key("twist", 0.0, {"angle": 0.0})
+        clip = clip.key("twist", 0.5, {"angle": 1.2})
+        assert clip.export(tmp_path / "clip.abc", name="tube").losses == ()
+        schema = AbcGeom.IPolyMesh(Abc.IArchive(str(tmp_path / "clip.abc")).getTop(), "tube").getSchema()
+        counts = np.array(list(schema.getValue(Abc.ISampleSelector(0)).getFaceCounts()))
+        ends = np.repeat(np.cumsum(counts) - 1, counts)
+        back = ends - (np.arange(corners) - np.repeat(np.cumsum(counts) - counts, counts))  # polygons are turned
+        for moment in clip.frames():
+            at, frame = Abc.ISampleSelector(moment.time), clip.posed(moment)
+            if mesh.uvs is None:
+                found = np.array([tuple(each) for each in schema.getNormalsParam().getExpandedValue(at).getVals()])
+                assert np.abs(found - frame.vertex_attributes["normals"]).max() < 1e-5
+            else:
+                found = np.array([tuple(each) for each in schema.getNormalsParam().getExpandedValue(at).getVals()])
+                assert np.abs(found[back] - frame.normals.per_corner).max() < 1e-6
+                found = np.array([tuple(each) for each in schema.getUVsParam().getExpandedValue(at).getVals()])
+                assert np.abs(found[back] - uvs.per_corner).max() < 1e-6
+
+
+def test_alembic_says_what_it_does_not_keep(tmp_path):
+    some = CornerValues(np.zeros((1, 2)), np.where(np.arange(len(MESH.faces.flat)) < 4, -1, 0).astype(np.int32))
+    clip = pl.Clip(MESH.replace(uvs=some), mixed_stack(), duration=0.5, fps=4)
+    assert clip.export(tmp_path / "clip.abc").losses == ("uvs, which some corners have and some have not",)
+
+
 def test_point_caches_are_laid_out_as_their_programs_expect(moving, motion, tmp_path):
     for ending in (".pc2", ".mdd"):
         moving.export(tmp_path / f"clip{ending}")
