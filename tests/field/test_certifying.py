@@ -231,6 +231,20 @@ def test_what_is_only_sampled_is_never_proved():
     assert pl.certify(bend, bounds=((-1, -1, -9), (1, 1, 9))).status == "folds"
 
 
+def test_progress_is_told_and_what_it_raises_ends_the_search():
+    told, wild_one = [], wild("clamp", 3, 0.4)
+    proof = pl.certify(wild_one, budget=3000, tolerance=1e-6, progress=told.append)
+    assert len(told) > 1
+    assert told == sorted(told)
+    assert told[-1] == pytest.approx(proof.subdivisions / 3000)
+
+    def enough(part):
+        raise KeyboardInterrupt(part)
+
+    with pytest.raises(KeyboardInterrupt):
+        pl.certify(wild_one, budget=3000, tolerance=1e-6, progress=enough)
+
+
 def test_bad_input():
     lattice = pl.BSplineFFD.around(BOX)
     with pytest.raises(InvalidParameter, match="budget"):

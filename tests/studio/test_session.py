@@ -13,6 +13,7 @@ from pliant.scene.scene import Scene
 from pliant.studio.autosave import Autosave
 from pliant.studio.examples.samples import SAMPLES, ball, torus
 from pliant.studio.history import MOST, Entry, History
+from pliant.studio.jobs import Outdated
 from pliant.studio.seen.drawn import DrawnMesh
 from pliant.studio.seen.quantities import QUANTITIES
 from pliant.studio.serving.frames import TYPES, Frame, MalformedFrame
@@ -268,3 +269,24 @@ def test_a_widget_gives_its_stack_back():
     widget._receive(widget, {"frame": True}, [Frame({"id": 4, "do": "points.set", "with": values}, arrays).encode()])
     assert widget.stack["Lattice"].deformer.controls[0, 0, 0].tolist() == [9, 8, 7]
     assert sent[-1].head == {"answer": 4}
+
+
+def test_a_proof_tells_how_far_it_is_and_an_outdated_one_ends():
+    mesh = ball()
+    lattice = pl.BSplineFFD.around(mesh, shape=(5, 5, 5))
+    noise = np.random.default_rng(1).normal(size=lattice.rest.shape)
+    scene = pl.Scene(mesh, pl.Stack([pl.Layer("Lattice", lattice.moved(lattice.rest + 0.1 * noise))]))
+    session, page = Session(scene, "ball"), Page()
+    session.join(page)
+    session.submit(session.jobs.look_for_folds).result()
+    session.jobs._pool.submit(lambda: None).result()  # the proof has ended
+    session.submit(lambda: None).result()  # and all that it told has been sent
+    told = [frame.head["fold"] for frame in page.events("fold")]
+    begun = max(at for at, fold in enumerate(told) if fold == {"status": "checking"})
+    parts = [fold["part"] for fold in told[begun:] if "part" in fold]
+    assert len(parts) > 1
+    assert parts == sorted(parts)
+    assert told[-1]["status"] in ("fold-free", "folds", "undecided")
+    with pytest.raises(Outdated):
+        session.jobs._looked(session.jobs._looking - 1, 0.5)
+    session.end()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 from numpy.typing import ArrayLike
 
@@ -25,6 +27,7 @@ def certify(
     budget: int = 20_000,
     tolerance: float = 0.01,
     bounds: tuple[ArrayLike, ArrayLike] | None = None,
+    progress: Callable[[float], object] | None = None,
 ) -> Certificate:
     """Prove that a map does not fold: that det J > 0 everywhere.
 
@@ -56,6 +59,9 @@ def certify(
     bounds
         Lowest and highest corner, (3,) each, of the box to sample where nothing can be proved. None = the box of the
         control points at rest, where there are some.
+    progress
+        Is told, while boxes are halved, what part of the budget is spent, from 0 to 1; anew for each part of a
+        composition. What it raises ends the search.
 
     Raises
     ------
@@ -76,7 +82,7 @@ def certify(
     def prove(part: SpaceDeformer) -> Certificate:
         cells = polynomial_cells(part)
         if cells is not None:
-            return _certificate(cells, budget, tolerance)
+            return _certificate(cells, budget, tolerance, progress)
         return certificate_by_rule(part, prove) or Certificate("undecided", method="sampled")
 
     proof = prove(deformer)
@@ -108,8 +114,10 @@ def determinants_of(cells: PolynomialCells) -> Determinants:
     return polynomials
 
 
-def _certificate(cells: PolynomialCells, budget: int, tolerance: float) -> Certificate:
-    found = determinant_range(determinants_of(cells), budget, tolerance)
+def _certificate(
+    cells: PolynomialCells, budget: int, tolerance: float, progress: Callable[[float], object] | None
+) -> Certificate:
+    found = determinant_range(determinants_of(cells), budget, tolerance, progress)
     folds = found.lower <= 0 and _is_fold(cells, found.least)
     fold_free = found.lower > 0
     return Certificate(

@@ -7,6 +7,7 @@ quadratically.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -113,7 +114,9 @@ class Boxes:
         return Extreme(float(corners[box, corner]), float(self.error[box]), int(self.cell[box]), (x, y, z))
 
 
-def determinant_range(polynomials: Determinants, budget: int, tolerance: float) -> Range:
+def determinant_range(
+    polynomials: Determinants, budget: int, tolerance: float, progress: Callable[[float], object] | None = None
+) -> Range:
     """Bounds of det J over all cells, and over what lies beyond them.
 
     Parameters
@@ -124,8 +127,10 @@ def determinant_range(polynomials: Determinants, budget: int, tolerance: float) 
         How many boxes may be halved, after one look at each cell.
     tolerance
         How close the bounds should come to the values found, relative to these.
+    progress
+        Is told what part of the budget is spent, from 0 to 1.
     """
-    return _Search(polynomials, tolerance).run(budget)
+    return _Search(polynomials, tolerance).run(budget, progress)
 
 
 class _Search:
@@ -140,7 +145,7 @@ class _Search:
         self._lower, self._upper = (float(below), float(above)) if beyond else (np.inf, -np.inf)
         self._open: Boxes | None = None
 
-    def run(self, budget: int) -> Range:
+    def run(self, budget: int, progress: Callable[[float], object] | None) -> Range:
         self._look_at_cells()
         halved = 0
         while self._open is not None and len(self._open.cell) and halved < budget:
@@ -151,6 +156,8 @@ class _Search:
             halved += len(worst)
             self._open = self._open.chosen(rest)
             self._take(children)
+            if progress is not None:
+                progress(halved / budget)
         lower, upper = self._lower, self._upper
         if self._open is not None and len(self._open.cell):
             lower = min(lower, float(self._open.low.min()))

@@ -10,6 +10,7 @@ import itertools
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, field
+from functools import partial
 from threading import Event
 from typing import TYPE_CHECKING, Any
 
@@ -25,6 +26,10 @@ if TYPE_CHECKING:
     from pliant.studio.session import Session
 
 _BUDGET = 4000  # boxes that a proof may halve: a second or two
+
+
+class Outdated(PliantError):
+    """The scene has changed while something was computed of it."""
 
 
 @dataclass(frozen=True)
@@ -106,11 +111,18 @@ class Jobs:
         if ticket != self._looking:
             return  # somebody has dragged on
         try:
-            proof = certify(space_map(scene.stack), budget=_BUDGET, bounds=scene.mesh.bounds)
+            told = partial(self._looked, ticket)
+            proof = certify(space_map(scene.stack), budget=_BUDGET, bounds=scene.mesh.bounds, progress=told)
             found = _told(proof)
         except PliantError:
             found = {"status": "none"}
         self._hand_over(self._take, found, ticket)
+
+    def _looked(self, ticket: int, part: float) -> None:
+        """A proof is that far; one that nobody waits for any more ends."""
+        if ticket != self._looking:
+            raise Outdated("somebody has dragged on")
+        self._hand_over(self._take, {"status": "checking", "part": part}, ticket)
 
     def _take(self, found: dict[str, Any], ticket: int) -> None:
         if ticket == self._looking:

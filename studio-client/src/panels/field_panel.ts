@@ -28,6 +28,8 @@ interface Fold {
   status: "fold-free" | "folds" | "undecided" | "checking" | "none";
   point?: number[];
   least?: number;
+  /** How far a proof is, from 0 to 1. */
+  part?: number;
 }
 
 export class FieldPanel {
@@ -216,9 +218,15 @@ export class FieldPanel {
     replace(
       this.foldLine,
       icon(fold.status === "folds" ? "warning" : "check", 16) as unknown as Node,
-      h("span", null, fold.status === "folds" && fold.least !== undefined ? `${t(text)}: det J = ${fold.least.toPrecision(3)}` : t(text)),
+      h("span", null, t(text), detail(fold)),
       point && button(t("showFold"), look, { kind: "quiet" }),
       fold.status === "folds" && button(t("limitFold"), () => void studio.ask("field.limit"), { kind: "quiet" }),
     );
   }
+}
+
+/** How strongly it folds, or how far the proof is. */
+function detail({ status, least, part }: Fold): string {
+  if (status === "folds" && least !== undefined) return `: det J = ${least.toPrecision(3)}`;
+  return part === undefined ? "" : ` ${Math.round(100 * part)} %`;
 }
