@@ -369,6 +369,7 @@ def compile_note() -> str:
         "points = np.random.default_rng(0).random((100, 3))\n"
         "start = time.perf_counter()\n"
         "for kind in (BSplineFFD.around(points), BezierFFD.around(points, shape=(3, 3, 3))):\n"
+        "    kind(points)\n"
         "    bound = kind.bind(points)\n"
         "    bound.deform(), bound.vjp(None, points), kind.jacobian(points)\n"
         "    moved = kind.rest.copy(); moved[1, 1, 1] += 1; bound.drag().update(moved)\n"
