@@ -63,6 +63,15 @@ def test_export_recipe_writes_what_apply_reads(run, cube, project, tmp_path):
     assert np.allclose(pl.read(tmp_path / "out.obj").points, pl.load_project(project).deformed().points)
 
 
+def test_recipes_that_are_exported_to_fit_do(run, cube, project, tmp_path):
+    mesh = pl.read(cube)
+    pl.write(mesh.with_points(10 * mesh.points + [1, 2, 3]), tmp_path / "large.obj")
+    assert run("export-recipe", project, "-o", tmp_path / "fit.toml", "--fit").exit_code == 0
+    assert run("apply", tmp_path / "fit.toml", tmp_path / "large.obj", "-o", tmp_path / "out.obj").exit_code == 0
+    wanted = 10 * pl.load_project(project).deformed().points + [1, 2, 3]
+    assert np.allclose(pl.read(tmp_path / "out.obj").points, wanted, atol=1e-9)
+
+
 def test_animate_writes_a_motion(run, cube, recipe, project, tmp_path):
     done = run("animate", recipe, cube, "-o", tmp_path / "a.mdd", "--fps", "4", "--duration", "2", "--json")
     assert done.exit_code == 0, done.stderr

@@ -128,7 +128,7 @@ def test_with_y_up_it_does_the_same_to_the_mesh_laid_over():
     ("text", "cause"),
     [
         ("", r"it has no \[\[layer\]\]"),
-        ("pliant = 2\n[[layer]]", "of version 2; this pliant reads up to 1"),
+        ("pliant = 3\n[[layer]]", "of version 3; this pliant reads up to 2"),
         ("pliant = 0\n[[layer]]", "its version is 0"),
         ('colour = "red"', "recipes have no 'colour'; they have: pliant, title"),
         ("layer = 3", r"'layer' must be tables: write \[\[layer\]\]"),

@@ -136,6 +136,7 @@ def export_recipe(
     project: Annotated[Path, typer.Argument(metavar="PROJECT", show_default=False, help="A project file, .pliant.")],
     output: Annotated[Path, typer.Option("--output", "-o", metavar="OUT", help="The recipe to write, .toml.")],
     title: Annotated[str, typer.Option(help="What people call it.")] = "",
+    fit: Annotated[bool, typer.Option("--fit", help="Made for the project's mesh, it fits others, too.")] = False,
     json: opt.JsonOption = False,
     quiet: opt.QuietOption = False,
 ) -> None:
@@ -145,7 +146,7 @@ def export_recipe(
         from pliant.scene.recipe_writing import write_recipe
 
         scene = load_project(project)
-        write_recipe(scene.clip or scene.stack, output, title=title)
+        write_recipe(scene.clip or scene.stack, output, title=title, mesh=scene.mesh if fit else None)
         session.say(f"wrote {output}: {len(scene.stack)} layers")
         session.result(input=project, output=output, layers=list(scene.stack.names))
 

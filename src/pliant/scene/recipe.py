@@ -2,7 +2,8 @@
 
 A recipe is TOML: tables ``[[layer]]``, each of a kind of deformer and its fields, and tables ``[[key]]``, values at
 times. Angles are degrees. With ``around`` a layer is laid around the mesh that the recipe is applied to, and lengths
-and places may be given as parts of that mesh, such as ``"30 %"``.
+and places may be given as parts of that mesh, such as ``"30 %"``. With ``box``, the corners of the box that all numbers
+were made for, layers are fitted to the box of the mesh.
 """
 
 from __future__ import annotations
@@ -21,15 +22,17 @@ from pliant.io.files import read_bytes
 from pliant.mesh import PolygonMesh
 from pliant.scene.clip import Clip
 from pliant.scene.easing import Easing
+from pliant.scene.fitting import Fit
 from pliant.scene.recipe_layers import keyed_values, layer_around
+from pliant.scene.recipe_values import Box
 from pliant.scene.stack import Stack
 from pliant.space.affine import Affine
 from pliant.space.placed import place
 
-VERSION = 1
+VERSION = 2
 _UPRIGHT = Affine.rotation("x", -np.pi / 2)  # from z up to y up
 _LARGEST = 1e300
-_HEAD = ("pliant", "title", "about", "mode", "duration", "fps", "ending", "layer", "key")
+_HEAD = ("pliant", "title", "about", "box", "mode", "duration", "fps", "ending", "layer", "key")
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,7 +112,8 @@ class Recipe:
             raise InvalidParameter(f"up is 'y' or 'z', and the intensity finite; given: {up!r} and {intensity}")
         upright = mesh if up == "z" else _UPRIGHT.inverted()(mesh)
         try:
-            layers = [layer_around(data, upright, float(intensity)) for data in self.layers]
+            fit = self._fit(upright)
+            layers = [layer_around(data, upright, float(intensity), fit) for data in self.layers]
             if up == "y":
                 layers = [layer.changed(deformer=_turned(layer.deformer)) for layer in layers]
             return Stack(tuple(layers), self.document.get("mode", "compose"))
@@ -155,6 +159,8 @@ class Recipe:
     def _keyed(
         self, stack: Stack, mesh: PolygonMesh, intensity: float
     ) -> Iterator[tuple[str, float, dict[str, Any], Easing]]:
+        fit = self._fit(mesh)
+        around = {data["name"] for data in self.layers if "around" in data}
         for place_, data in enumerate(self.keys):
             layer, time = data.get("layer"), data.get("time")
             if not isinstance(layer, str) or not _is_number(time):
@@ -163,11 +169,23 @@ class Recipe:
                 yield (
                     layer,
                     float(data["time"]),
-                    keyed_values(data, stack[layer], mesh, intensity),
+                    keyed_values(data, stack[layer], mesh, intensity, None if layer in around else fit),
                     data.get("easing", "linear"),
                 )
             except InvalidParameter as error:
                 raise InvalidParameter(f"{self.name}: {error}") from error
+
+    def _fit(self, mesh: PolygonMesh) -> Fit | None:
+        """From the box that the recipe's numbers were made for to that of a mesh; None where it names no box."""
+        if "box" not in self.document:
+            return None
+        try:
+            low, high = np.array(self.document["box"], np.float64).reshape(2, 3)
+        except (TypeError, ValueError, OverflowError) as error:
+            raise InvalidParameter(f"{self.name}: its box is no [[x, y, z], [x, y, z]], low corner and high") from error
+        if not np.isfinite([low, high]).all() or (high < low).any():
+            raise InvalidParameter(f"{self.name}: its box from {low.tolist()} to {high.tolist()} is none")
+        return Fit(Box(low, high), Box.of(mesh))
 
     def _tables(self, name: str) -> tuple[Mapping[str, Any], ...]:
         tables = self.document.get(name, [])

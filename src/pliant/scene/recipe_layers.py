@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from pliant.deformer import Deformer, SpaceDeformer
 from pliant.errors import InvalidParameter
 from pliant.mesh import PolygonMesh
+from pliant.scene.fitting import Fit, exaggerated
 from pliant.scene.keyed import tool_of
 from pliant.scene.kinds import Kind, all_kinds, build, kind_of
 from pliant.scene.layer import Layer
@@ -33,7 +34,7 @@ _ALONG = ("bounds", "center")  # positions along the deformer's own axis
 RESERVED = ("name", "kind", "around", "fields", "mask", "envelope", "moves", *SWITCHES)
 
 
-def layer_around(data: Mapping[str, Any], mesh: PolygonMesh, intensity: float) -> Layer:
+def layer_around(data: Mapping[str, Any], mesh: PolygonMesh, intensity: float, fit: Fit | None = None) -> Layer:
     """One layer of a recipe.
 
     Parameters
@@ -44,6 +45,8 @@ def layer_around(data: Mapping[str, Any], mesh: PolygonMesh, intensity: float) -
         What it is laid around.
     intensity
         How far its numbers are from those at rest: 1 = as the recipe says.
+    fit
+        From the box that its numbers were made for, where the recipe names one.
 
     Raises
     ------
@@ -63,6 +66,8 @@ def layer_around(data: Mapping[str, Any], mesh: PolygonMesh, intensity: float) -
     fields = {**{key: value for key, value in data.items() if key not in RESERVED}, **given}
     try:
         deformer = _deformer(all_kinds()[label], fields, data, mesh, intensity)
+        if fit is not None and "around" not in data:
+            deformer = fit.deformer(deformer)
         switches = {switch: bool(data.get(switch, False)) for switch in SWITCHES}
         mask = _mask(data["mask"], mesh) if "mask" in data else None
         return Layer(name, deformer, mask, envelope=data.get("envelope", 1.0), **switches)
@@ -70,8 +75,10 @@ def layer_around(data: Mapping[str, Any], mesh: PolygonMesh, intensity: float) -
         raise InvalidParameter(f"layer {name!r}: {error}") from error
 
 
-def keyed_values(data: Mapping[str, Any], layer: Layer, mesh: PolygonMesh, intensity: float) -> dict[str, Any]:
-    """The values of a key of a recipe, as :meth:`Clip.key` takes them."""
+def keyed_values(
+    data: Mapping[str, Any], layer: Layer, mesh: PolygonMesh, intensity: float, fit: Fit | None = None
+) -> dict[str, Any]:
+    """The values of a key of a recipe, as :meth:`Clip.key` takes them; of layers that were fitted, fitted."""
     values = {name: value for name, value in data.items() if name not in ("layer", "time", "easing")}
     box = Box.of(mesh)
     if values and all(name in MOTION for name in values) and isinstance(layer.deformer, Affine):
@@ -82,12 +89,14 @@ def keyed_values(data: Mapping[str, Any], layer: Layer, mesh: PolygonMesh, inten
     for name, value in values.items():
         if name in ("envelope", "muted", "controls", "frame"):
             found[name] = np.asarray(decode(value, {}), np.float64)
+            if name == "controls" and intensity != 1.0 and layer.in_space:
+                found[name] = layer.deformer.rest + intensity * (found[name] - layer.deformer.rest)
         elif name in fields:
             plain = decode(field_value(value, fields[name], box), {})
             found[name] = _intense(kind, name, plain, intensity)
         else:
             raise InvalidParameter(f"a key of layer {layer.name!r} has no {name!r}; there are: {', '.join(fields)}")
-    return found
+    return found if fit is None else {name: fit.field(layer.deformer, name, value) for name, value in found.items()}
 
 
 def _deformer(
@@ -96,7 +105,8 @@ def _deformer(
     if kind.cls is Affine and any(name in MOTION for name in fields):
         return Affine(motion_matrix(fields, Box.of(mesh), intensity))
     if "around" not in data:
-        return build(kind.name, fields_with_degrees(kind.name, fields, inwards=True))
+        made = build(kind.name, fields_with_degrees(kind.name, fields, inwards=True))
+        return _exaggerated(kind, made, intensity)
     maker = str(data["around"]) if data["around"] is not True else "around"
     known = {field.name: field for field in kind.makers.get(maker, ())}
     box, values = Box.of(mesh), {}
@@ -122,6 +132,15 @@ def _intense(kind: Kind, name: str, value: Any, intensity: float) -> Any:
     if neutral[name] == 1.0 and value > 0:
         return math.exp(intensity * math.log(value))  # factors: twice as intense is applied twice
     return neutral[name] + intensity * (value - neutral[name])
+
+
+def _exaggerated(kind: Kind, deformer: Deformer, intensity: float) -> Deformer:
+    """A deformer whose numbers are given, further from rest, or nearer to it."""
+    neutral: Mapping[str, float] = getattr(kind.cls, "neutral", {})
+    if intensity == 1.0 or not neutral:
+        return exaggerated(deformer, intensity)
+    values = {name: _intense(kind, name, float(getattr(deformer, name)), intensity) for name in neutral}
+    return replace(deformer, **values)  # type: ignore[type-var]
 
 
 def _with_moves(deformer: Deformer, moves: Any, box: Box, intensity: float) -> Deformer:

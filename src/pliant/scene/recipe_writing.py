@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from pliant.errors import InvalidParameter
 from pliant.io.files import write_bytes
+from pliant.mesh import PolygonMesh
 from pliant.scene.clip import Clip
 from pliant.scene.fields import fields_of
 from pliant.scene.keyed import tool_of
@@ -26,7 +27,9 @@ MOST = 20_000  # numbers in an array that people could still want to see
 _HEADLINE = "# A recipe of pliant. Angles are degrees, lengths are in the mesh's own unit.\n\n"
 
 
-def write_recipe(source: Stack | Clip, path: Path | str, *, title: str = "", about: str = "") -> None:
+def write_recipe(
+    source: Stack | Clip, path: Path | str, *, title: str = "", about: str = "", mesh: PolygonMesh | None = None
+) -> None:
     """Write a stack, or a clip with its keys, as a recipe.
 
     Parameters
@@ -37,6 +40,8 @@ def write_recipe(source: Stack | Clip, path: Path | str, *, title: str = "", abo
         Where to; ``.toml`` is the usual ending.
     title, about
         What people call it, and what it does.
+    mesh
+        What its numbers were made for: the recipe then fits other meshes, too.
 
     Raises
     ------
@@ -45,17 +50,21 @@ def write_recipe(source: Stack | Clip, path: Path | str, *, title: str = "", abo
     UnwritableFile
         The disk is full, or the place is not writable.
     """
-    text = _HEADLINE + toml_text(recipe_document(source, title=title, about=about))
+    text = _HEADLINE + toml_text(recipe_document(source, title=title, about=about, mesh=mesh))
     write_bytes(path, text.encode())
 
 
-def recipe_document(source: Stack | Clip, *, title: str = "", about: str = "") -> dict[str, Any]:
-    """A stack or a clip as the document of a recipe."""
+def recipe_document(
+    source: Stack | Clip, *, title: str = "", about: str = "", mesh: PolygonMesh | None = None
+) -> dict[str, Any]:
+    """A stack or a clip as the document of a recipe, see :func:`write_recipe`."""
     clip, stack = (source, source.stack) if isinstance(source, Clip) else (None, source)
     arrays: Arrays = {}
     data = stack_data(stack, arrays)
-    document: dict[str, Any] = {"pliant": 1}
+    document: dict[str, Any] = {"pliant": 1 if mesh is None else 2}
     document |= {name: text for name, text in (("title", title), ("about", about)) if text}
+    if mesh is not None:
+        document["box"] = [corner.tolist() for corner in mesh.bounds]
     document["mode"] = stack.mode
     if clip is not None:
         if clip.motion is not None:

@@ -8,6 +8,7 @@ from functools import cache
 from pathlib import Path
 
 from pliant.errors import InvalidParameter
+from pliant.mesh import PolygonMesh
 from pliant.scene.clip import Clip
 from pliant.scene.recipe import Recipe, read_recipe
 from pliant.scene.recipe_writing import write_recipe
@@ -53,16 +54,21 @@ def template(name: str) -> Recipe:
     return _ours()[name]
 
 
-def save_template(source: Stack | Clip, name: str, *, title: str = "", about: str = "") -> Path:
-    """Keep a stack or a clip as a template of the user's own.
+def save_template(
+    source: Stack | Clip, name: str, *, mesh: PolygonMesh | None = None, title: str = "", about: str = ""
+) -> Path:
+    """Keep a stack or a clip as a template of the user's own, which fits any mesh.
 
-    It keeps the numbers that it has, for the mesh that it is on: to fit other meshes, edit the file so that layers are
-    laid ``around`` a mesh, and lengths are percent.
+    Positions then go with the bounding box along each of its axes, lengths with its diagonal; angles, factors and
+    directions stay. Masks and edits of a surface know its vertices: they fit meshes of the same topology only.
 
     Parameters
     ----------
     source
         The stack or clip.
+    mesh
+        What a stack's numbers were made for; None = as they are, for meshes of that size in that place. A clip knows
+        its mesh.
     name
         Small letters, digits and hyphens.
     title, about
@@ -76,7 +82,8 @@ def save_template(source: Stack | Clip, name: str, *, title: str = "", about: st
     if not _NAME.fullmatch(name):
         raise InvalidParameter(f"{name!r} is no name of a template: use small letters, digits and hyphens")
     path = user_folder() / f"{name}.toml"
-    write_recipe(source, path, title=title or name, about=about)
+    made_for = source.mesh if isinstance(source, Clip) else mesh
+    write_recipe(source, path, title=title or name, about=about, mesh=made_for)
     return path
 
 

@@ -77,7 +77,8 @@ def keep(session: Session, request: Request) -> Frame:
         raise InvalidParameter("nothing deforms this shape yet: add a layer before it is kept as a template")
     clip = clip_of(scene)
     source = clip if clip.tracks else scene.stack
-    path = save_template(source, request.text("name"), title=request.text("title", ""), about=request.text("about", ""))
+    title, about = request.text("title", ""), request.text("about", "")
+    path = save_template(source, request.text("name"), mesh=scene.mesh, title=title, about=about)
     return Frame({"name": path.stem})
 
 
