@@ -122,15 +122,15 @@ export class Studio {
     this.viewport.request();
   }
 
-  placeGround(): void {
+  placeGround(viewport = this.viewport): void {
     const facts = this.scene?.mesh;
     if (!facts) return;
     const [low, high] = facts.bounds;
-    this.viewport.ground.place(
+    viewport.ground.place(
       new Box3(new Vector3().fromArray(low), new Vector3().fromArray(high)),
       this.settings.now.up,
     );
-    this.viewport.ground.object.visible = this.settings.now.ground;
+    viewport.ground.object.visible = this.settings.now.ground;
   }
 
   get title(): string {

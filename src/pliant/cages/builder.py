@@ -8,17 +8,18 @@ from typing import Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from pliant.cages.enclosing import Enclosing, untangled
+from pliant.cages.enclosing import Enclosing, spread, untangled
 from pliant.cages.linking import Linking
 from pliant.cages.parting import Parts, parted
 from pliant.cages.relaxing import relaxed
 from pliant.cages.sections import Cut
 from pliant.errors import InvalidParameter, InvalidTarget, NotConverged
-from pliant.mesh import PolygonMesh
+from pliant.mesh import Points, PolygonMesh
 from pliant.numerics.meshes.triangle_crossings import self_crossings
 
 _FIRST = 4  # vertices between the rings of a region that is linked along the surface, at first
-_ATTEMPTS = 5  # each doubles them where it fails
+_MORE = 6  # that many each time where it fails, and there
+_ATTEMPTS = 6
 _PATIENCE = 2  # attempts for which rings and links may cut one another before the margin is made smaller
 _SHARES = (1.0, 0.5, 0.25)  # of the margin, tried in turn: limbs may be near to one another
 
@@ -127,23 +128,29 @@ class CageBuilder:
         parts, clearance = self._parted(), 0.1 * self.margin * self.mesh.diagonal
         regions = parts.of_vertices(len(self.mesh.points))
         for share in _SHARES:
-            linking, places = self._linking(parts, share), dict[int, int]()
+            linking, places, near = self._linking(parts, share), dict[int, int](), dict[int, Points]()
             for attempt in range(_ATTEMPTS):
-                linked, owners = linking.linked(places)
+                linked, owners = linking.linked(places, near)
                 rough = untangled(linked, self.mesh)
                 crossed = self_crossings(rough.points, rough.triangles)
                 if len(crossed):
-                    faults = np.unique(owners[rough.triangle_faces[crossed]])
+                    triangles = np.unique(crossed)
+                    wrong = rough.points[rough.triangles[triangles]].mean(axis=1)
+                    at = owners[rough.triangle_faces[triangles]]
                     if attempt >= _PATIENCE and share != _SHARES[-1]:
                         break  # limbs are too near to one another for this margin
                 else:
-                    points, faults = Enclosing(rough, owners, self.mesh, regions, share * clearance).solve()
-                if not len(faults):
+                    points, wrong, at = Enclosing(rough, owners, self.mesh, regions, share * clearance).solve()
+                if not len(wrong):
                     return relaxed(rough.with_points(points), self.mesh, rounds, clearance)
-                places |= {region: 2 * places[region] if region in places else _FIRST for region in faults.tolist()}
+                for region in np.unique(at).tolist():
+                    if region in places:
+                        near[region] = np.concatenate([near.get(region, wrong[:0]), spread(wrong[at == region], _MORE)])
+                    places[region] = places.get(region, 0) + _FIRST
+        failing = linking.named(np.unique(at).tolist())
         raise NotConverged(
             f"the {len(self.cuts)} cuts give no cage that encloses the mesh without cutting itself: it fails at "
-            f"{linking.named(faults)}. Add cuts where the shape bends, widens or branches, keep cuts of neighbouring "
+            f"{failing}. Add cuts where the shape bends, widens or branches, keep cuts of neighbouring "
             "limbs apart, or take a smaller margin"
         )
 

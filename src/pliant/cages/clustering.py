@@ -60,7 +60,7 @@ def collar(points: Points, rim: Indices, cut: Cut, sides: int, first: int) -> In
 
 
 def clustered(
-    points: Points, triangles: Indices, rings: Indices, wanted: int, room: float, border: Indices
+    points: Points, triangles: Indices, rings: Indices, near: Points, wanted: int, room: float, border: Indices
 ) -> Clusters | None:
     """The faces between rings, along a surface.
 
@@ -70,6 +70,8 @@ def clustered(
         The surface, collars and rings included.
     rings
         Indices of all corners.
+    near
+        (k, 3) where on the surface there shall be places.
     wanted
         The least number of places between the rings.
     room
@@ -81,10 +83,15 @@ def clustered(
     -------
     Clusters, or None where no number of seeds gives a surface.
     """
+    from scipy.spatial import KDTree
+
     used, local = np.unique(triangles, return_inverse=True)
     local, places = local.reshape(-1, 3), points[used]
     graph = _graph(places, local)
     seeds = np.searchsorted(used, rings)
+    if len(near):
+        found = KDTree(places).query(near)[1]
+        seeds = np.concatenate([seeds, np.setdiff1d(found, seeds)])
     distance, nearest = _gathered(graph, seeds)
     while len(seeds) - len(rings) <= _MOST:
         among = np.isfinite(distance)

@@ -18,6 +18,7 @@ Indices = NDArray[np.int64]
 _ROUNDS = 40
 _PATIENCE = 10
 _HALVINGS = 5
+_TURNS = 30  # in which vertices that would make the cage cut itself stay where they are
 _LONGEST = 0.04  # of the diagonal: a step
 
 
@@ -42,26 +43,26 @@ class Enclosing:
         self._mesh, self._regions, self._clearance = mesh, regions, clearance
         self._strides = np.clip(0.2 * longest_sides(mesh), clearance, 4 * clearance)
 
-    def solve(self) -> tuple[Points, Indices]:
-        """Where the vertices are in the end, and the regions that are not enclosed yet."""
+    def solve(self) -> tuple[Points, Points, Indices]:
+        """Where the vertices are in the end; (k, 3) where the mesh sticks out all the same, and in which regions."""
         points, triangles = self._cage.points.copy(), self._cage.triangles
         longest = _LONGEST * self._mesh.diagonal
-        before: tuple[int, ...] = ()
+        before = np.inf
         for turn in range(1, _ROUNDS + 1):
-            steps, counts, faults = self._steps(points)
-            if not len(faults):
-                return points, faults
+            steps, wrong, owners = self._steps(points)
+            if not len(wrong):
+                return points, wrong, owners
             if turn % _PATIENCE == 0:  # no fewer than some rounds ago: it will not do
-                if before and counts >= before:
-                    return points, faults
-                before = counts
+                if len(wrong) >= before:
+                    return points, wrong, owners
+                before = len(wrong)
             lengths = np.linalg.norm(steps, axis=1, keepdims=True)
             steps *= np.minimum(1.0, longest / np.maximum(lengths, 1e-300))
             points = _moved(points, triangles, steps)
-        return points, self._steps(points)[2]
+        return points, *self._steps(points)[1:]
 
-    def _steps(self, points: Points) -> tuple[Floats, tuple[int, ...], Indices]:
-        """(m, 3) where the cage's vertices shall go, how much is wrong, and in which regions."""
+    def _steps(self, points: Points) -> tuple[Floats, Points, Indices]:
+        """(m, 3) where the cage's vertices shall go, (k, 3) places that stick out of it, and the regions of these."""
         mesh, triangles = self._mesh, self._cage.triangles
         pushes = _Pushes(len(points))
         outside = np.flatnonzero(winding_numbers(mesh.points, points, triangles) < 0.5)
@@ -75,8 +76,8 @@ class Enclosing:
         pairs = crossings(points, triangles, mesh.points, mesh.triangles)
         pairs = pairs[~np.isin(mesh.triangles[pairs[:, 1]], outside).any(axis=1)]
         pushes.off(points, triangles[pairs[:, 0]], self._strides[pairs[:, 1]])
-        faults = np.union1d(self._regions[outside], self._owners[pairs[:, 0]]).astype(np.int64)
-        return pushes.steps, (len(outside), len(pairs)), faults
+        wrong = np.concatenate([mesh.points[outside], mesh.points[mesh.triangles[pairs[:, 1]]].mean(axis=1)])
+        return pushes.steps, wrong, np.concatenate([self._regions[outside], self._owners[pairs[:, 0]]])
 
 
 class _Pushes:
@@ -115,7 +116,7 @@ class _Pushes:
 def _moved(points: Points, triangles: NDArray[np.integer], steps: Floats) -> Points:
     """Vertices after their steps, shorter ones where the cage would cut itself."""
     part = np.ones(len(points))
-    for turn in range(2 * _HALVINGS):
+    for turn in range(_TURNS):
         moved = points + part[:, None] * steps
         pairs = self_crossings(moved, triangles)
         if not len(pairs):
@@ -139,3 +140,13 @@ def untangled(cage: PolygonMesh, mesh: PolygonMesh) -> PolygonMesh:
         if not len(pairs):
             break
     return cage.with_points(points)
+
+
+def spread(points: Points, count: int) -> Points:
+    """Some of (k, 3) points, each the farthest from those before it."""
+    chosen = [0]
+    distance = np.linalg.norm(points - points[0], axis=1)
+    while len(chosen) < min(count, len(points)):
+        chosen.append(int(distance.argmax()))
+        distance = np.minimum(distance, np.linalg.norm(points - points[chosen[-1]], axis=1))
+    return points[chosen]

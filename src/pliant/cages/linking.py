@@ -19,6 +19,9 @@ from pliant.numerics.ragged import Ragged
 
 Indices = NDArray[np.int64]
 
+_NONE = np.empty((0, 3))
+_NOWHERE: Mapping[int, Points] = {}
+
 
 @dataclass
 class Linking:
@@ -40,13 +43,15 @@ class Linking:
     _faces: list[Ring] = field(default_factory=list)
     _owners: list[int] = field(default_factory=list)
 
-    def linked(self, places: Mapping[int, int]) -> tuple[PolygonMesh, Indices]:
+    def linked(self, places: Mapping[int, int], near: Mapping[int, Points] = _NOWHERE) -> tuple[PolygonMesh, Indices]:
         """The cage, and (f,) the region of each face.
 
         Parameters
         ----------
         places
             For regions that are linked along the surface the number of places between their rings, at least.
+        near
+            (k, 3) where some of these shall be.
 
         Raises
         ------
@@ -60,7 +65,9 @@ class Linking:
         self._faces, self._owners = [], []
         for region in np.unique(self.parts.sides).tolist():
             faces = None if region in places else self._simple(region)
-            faces = self._along_surface(region, places.get(region, 0)) if faces is None else faces
+            faces = (
+                self._along_surface(region, places.get(region, 0), near.get(region, _NONE)) if faces is None else faces
+            )
             if faces is None:
                 raise InvalidParameter(f"{self.named([region])} cannot be linked: add a cut where it branches")
             self._faces += faces
@@ -83,7 +90,7 @@ class Linking:
         points = np.concatenate(self._points)
         return tube(points, *rings) if len(rings) == 2 else branch(points, rings)
 
-    def _along_surface(self, region: int, wanted: int) -> list[Ring] | None:
+    def _along_surface(self, region: int, wanted: int, near: Points) -> list[Ring] | None:
         """Faces between places that are spread over the region, or over the hull of a limb's end."""
         numbers, sides = self._cuts_of(region), self.sides
         points, triangles, rims = self._surface(region, numbers)
@@ -96,7 +103,7 @@ class Linking:
         corners = np.concatenate([number * sides + np.arange(sides) for number in numbers])
         points = np.concatenate([points, np.concatenate(self._points)[corners]])
         seeds = count + np.arange(len(corners))
-        found = clustered(points, np.concatenate(collars), seeds, wanted, self.room, np.concatenate(border))
+        found = clustered(points, np.concatenate(collars), seeds, near, wanted, self.room, np.concatenate(border))
         if found is None:
             return None
         first = sum(map(len, self._points))

@@ -124,6 +124,7 @@ export class Other {
   paint(selected: ReadonlySet<number> = new Set()): void {
     const { palette, settings } = this.studio;
     this.mesh.apply(settings.now, palette);
+    this.studio.placeGround(this.side.viewport);
     this.handles.setColors((at) => (selected.has(at) ? palette.selected : palette.handle), () => 0.6, palette.lattice);
     this.side.viewport.request();
   }

@@ -148,6 +148,7 @@ class CageMode extends PointsMode {
     if (key !== this.loaded) {
       this.loaded = key;
       this.fill();
+      if (points) this.body.closest("section")?.scrollIntoView({ block: "start" }); // what is verified shall be seen
       this.planes.show(points === null);
       void this.fetch(points);
     }
