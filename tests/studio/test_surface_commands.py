@@ -1,5 +1,8 @@
 """Surface editing without a browser: what a page picks and drags is what the library finds and computes."""
 
+import time
+from threading import Event
+
 import numpy as np
 import pytest
 from pages import Page
@@ -8,7 +11,7 @@ import pliant as pl
 from pliant.scene.layer import Layer
 from pliant.scene.scene import Scene
 from pliant.scene.stack import Stack
-from pliant.studio.examples.samples import bar
+from pliant.studio.examples.samples import bar, torus
 from pliant.studio.session import Session
 from pliant.surface import regions
 from pliant.surface.screen import in_brush, in_lasso
@@ -233,3 +236,78 @@ def test_bad_requests_are_refused(edited, command, values, arrays, cause):
     flat = {name: array.astype(np.uint32) if array.dtype.kind == "i" else array for name, array in flat.items()}
     assert cause in page.refused(session, command, values, **flat)["message"]
     assert session.dragging is None
+
+
+def large_ring():
+    """A region of more than two thousand vertices, and a handle on its far side."""
+    ring = torus(around=72, across=36)
+    x = ring.points[:, 0]
+    return ring, np.flatnonzero(x > x.min() + 0.2), np.flatnonzero(x > x.max() - 0.15)
+
+
+def let_go(session, page, handle, region):
+    structure = {"region": region.astype(np.uint32), "handle": handle.astype(np.uint32)}
+    layer = page.ask(session, "surface.begin", {"method": "arap"}, **structure).head["layer"]
+    page.ask(session, "surface.move", matrix=sent(turn(0.8, shift=(0.0, 0.0, 0.5))))
+    shown = np.array(session.dragging._drag.points)
+    page.ask(session, "surface.commit")
+    return layer, shown
+
+
+def settled(session, page):
+    """Wait for what is iterated in the background."""
+    end = time.monotonic() + 60
+    while not page.events("progress-end"):
+        assert time.monotonic() < end
+        time.sleep(0.01)
+    session.worker.submit(lambda: None).result()
+
+
+def test_a_large_edit_is_let_go_at_once_and_iterated_to_its_end_in_the_background(edited):
+    ring, region, handle = large_ring()
+    session, page = edited(Scene(ring))
+    held = Event()
+    session.jobs._pool.submit(held.wait, 60)
+    layer, shown = let_go(session, page, handle, region)
+    assert len(session.history.entries) == 2
+    np.testing.assert_allclose(session.shown.binding.result, shown, rtol=0, atol=1e-12)  # nothing jumps
+    drawn = len(page.events("points"))
+    held.set()
+    settled(session, page)
+    assert len(page.events("points")) > drawn
+    made = session.scene.stack[layer].deformer
+    expected = made(ring).points
+    np.testing.assert_allclose(session.shown.binding.result, expected, atol=1e-9)
+    assert np.abs(shown - expected).max() > 1e-6
+    assert len(session.history.entries) == 2
+
+
+def test_what_is_undone_meanwhile_stays_undone_and_what_is_done_again_is_exact(edited):
+    ring, region, handle = large_ring()
+    session, page = edited(Scene(ring))
+    held = Event()
+    session.jobs._pool.submit(held.wait, 60)
+    layer, _ = let_go(session, page, handle, region)
+    page.ask(session, "history.undo")
+    held.set()
+    settled(session, page)
+    assert session.shown.binding.result.tolist() == ring.points.tolist()
+    page.ask(session, "history.redo")
+    expected = session.scene.stack[layer].deformer(ring).points
+    np.testing.assert_allclose(session.shown.binding.result, expected, atol=1e-9)
+
+
+def test_the_next_drag_goes_on_from_what_is_shown(edited):
+    ring, region, handle = large_ring()
+    session, page = edited(Scene(ring))
+    held = Event()
+    session.jobs._pool.submit(held.wait, 60)
+    layer, shown = let_go(session, page, handle, region)
+    page.ask(session, "surface.begin", {"layer": layer, "method": "arap"})
+    held.set()
+    settled(session, page)
+    page.ask(session, "surface.move", matrix=sent(np.eye(4)))
+    assert np.abs(session.dragging._drag.points - shown).max() < 0.5
+    page.ask(session, "surface.cancel")
+    expected = session.scene.stack[layer].deformer(ring).points
+    np.testing.assert_allclose(session.shown.binding.result, expected, atol=1e-9)

@@ -39,9 +39,18 @@ class StackBinding(Binding):
         (n, 3) where its points are before the first layer, as in an animation; None = at rest.
     cache
         Of earlier results on the same shape.
+    exact
+        Whether what was supposed of layers does not count.
     """
 
-    def __init__(self, stack: Stack, target: Target, base: ArrayLike | None = None, cache: Cache | None = None) -> None:
+    def __init__(
+        self,
+        stack: Stack,
+        target: Target,
+        base: ArrayLike | None = None,
+        cache: Cache | None = None,
+        exact: bool = False,
+    ) -> None:
         self.stack = stack
         self.target: Target = target if isinstance(target, PolygonMesh) else as_points(target)
         rest = as_points(self.target)
@@ -51,7 +60,7 @@ class StackBinding(Binding):
         self._cache = Cache() if cache is None else cache
         key = b"rest" if base is None else array_key(points)
         self._ground = Ground(self.target, points, key, base is not None)
-        self._evaluator = Evaluator(self._ground, self._cache, stack.mode == "add")
+        self._evaluator = Evaluator(self._ground, self._cache, stack.mode == "add", exact)
         self._steps: dict[str, Step] = {}
         for layer in stack.active:
             step = self._evaluator.step(layer, points, key)
@@ -75,6 +84,45 @@ class StackBinding(Binding):
         if base is None and self._ground.moved:
             base = self._ground.base
         return StackBinding(stack, self.target, base, self._cache)
+
+    def suppose(self, layer: Layer, image: Points) -> None:
+        """Let points stand for what an edit of the surface does, in all bindings that share what is known.
+
+        An iteration that a drag has not ended is near its end: so it can be shown at once, and :meth:`settled` later.
+
+        Parameters
+        ----------
+        layer
+            The layer, as it will be.
+        image
+            (n, 3) where its deformer puts the shape at rest, nearly.
+        """
+        self._evaluator.suppose(layer, image)
+
+    def settled(self) -> StackBinding:
+        """The same with nothing supposed; from then on that is what is known."""
+        base = self._ground.base if self._ground.moved else None
+        found = StackBinding(self.stack, self.target, base, self._cache, exact=True)
+        for layer in self.stack.active:
+            if self._evaluator.near(layer) is not None:
+                self._evaluator.suppose(layer, None)
+        return found
+
+    def image(self, name: str) -> Points:
+        """(n, 3) where a layer's deformer alone puts what it deforms, a copy; as far as that is known, if it is near.
+
+        Raises
+        ------
+        InvalidParameter
+            There is no such layer.
+        """
+        layer, bound = self.stack[name], self.bound(name)
+        near, step = self._evaluator.near(layer), self._steps.get(name)
+        if near is not None:
+            return near.copy()
+        if step is not None and step.at is step.below and np.all(layer.strength == 1.0):
+            return np.array(step.points)
+        return bound.deform(controls_of(layer, bound))
 
     @property
     def result(self) -> Points:

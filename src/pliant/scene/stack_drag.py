@@ -58,7 +58,7 @@ class LayerDrag:
         for step in steps[place + 1 :]:
             stage = _Stage(step.layer, step.at, stages[-1].points, np.array(step.points), mesh, added)
             if not step.layer.in_space:
-                stage.own = self._binding._evaluator.binding(step).deform(_goal(step.layer))
+                stage.own = self._binding.image(step.layer.name)
             stages[-1].kept = stage.turns
             stages.append(stage)
         return stages
@@ -193,9 +193,3 @@ class _Stage:
 
 def _rows(touched: NDArray[np.integer], count: int) -> Rows:
     return slice(None) if len(touched) == count else touched
-
-
-def _goal(layer: Layer) -> Controls | None:
-    """A surface layer's controls; None = at rest."""
-    goal = getattr(layer.deformer, "goal", None)
-    return None if goal is None else np.asarray(goal, np.float64)

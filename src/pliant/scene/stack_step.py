@@ -72,8 +72,8 @@ class Ground:
 class Evaluator:
     """Evaluates layers, and remembers what it has evaluated and bound."""
 
-    def __init__(self, ground: Ground, cache: Cache, added: bool) -> None:
-        self._ground, self._cache, self._added = ground, cache, added
+    def __init__(self, ground: Ground, cache: Cache, added: bool, exact: bool = False) -> None:
+        self._ground, self._cache, self._added, self._exact = ground, cache, added, exact
 
     def step(self, layer: Layer, below: Points, below_key: bytes) -> Step:
         """The layer on (n, 3) points whose key is known."""
@@ -84,8 +84,11 @@ class Evaluator:
         layer.fits(len(below))
         at, at_key = self._place(layer, below, below_key)
         place = key_of("place", layer.structure, at_key)
-        points = self._result(layer, at, place, below, below_key)
+        near = None if self._exact else self.near(layer)
+        points = self._result(layer, at, place, below, below_key, near)
         points.flags.writeable = False
+        if near is not None:  # what stands on it must not be taken for the answer either
+            return Step(layer, key_of("near", key, near), place, at, below, points)
         step = Step(layer, key, place, at, below, points)
         self._cache.put(key, step, points.nbytes)
         return step
@@ -94,16 +97,31 @@ class Evaluator:
         """The step's deformer, bound to what it deforms; bound once."""
         return self._bound(step.layer, step.at, step.place)
 
+    def near(self, layer: Layer) -> Points | None:
+        """(n, 3) what stands for the image of a layer that edits the surface, until that is computed."""
+        found: Points | None = None if layer.in_space else self._cache.get(key_of("near", layer.content))
+        return found
+
+    def suppose(self, layer: Layer, image: Points | None) -> None:
+        """Let (n, 3) points stand for a layer's image; None = nothing any more."""
+        if image is not None:
+            image = np.array(image)
+            image.flags.writeable = False
+        self._cache.put(key_of("near", layer.content), image, 0 if image is None else image.nbytes)
+
     def _place(self, layer: Layer, below: Points, below_key: bytes) -> tuple[Points, bytes]:
         if not layer.in_space:
             return self._ground.rest, b"rest"
         return (self._ground.base, self._ground.key) if self._added else (below, below_key)
 
-    def _result(self, layer: Layer, at: Points, place: bytes, below: Points, below_key: bytes) -> Points:
+    def _result(
+        self, layer: Layer, at: Points, place: bytes, below: Points, below_key: bytes, near: Points | None
+    ) -> Points:
         if at is below:
-            return blended(below, self._image(layer, at, place), layer.strength)
+            image = self._image(layer, at, place) if near is None else near.copy()
+            return blended(below, image, layer.strength)
         key = key_of("displacement", layer.content, place)
-        displacement = self._cache.get(key)
+        displacement = self._cache.get(key) if near is None else _column(layer.strength) * (near - at)
         if displacement is None:
             displacement = self._image(layer, at, place)
             displacement -= at

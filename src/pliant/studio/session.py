@@ -201,13 +201,18 @@ class Session:
 
     def drop_drag(self) -> None:
         """Give up a drag: the shape goes back to where it was."""
-        if self.dragging is None:
+        if self.dragging is not None:
+            self.dragging = None
+            self.show_again()
+
+    def show_again(self) -> None:
+        """Show the scene as it is known now; while somebody drags in it, when that ends."""
+        if self.dragging is not None or self.stage is None:
             return
-        self.dragging = None
-        if self.stage is not None:
-            moved = self.stage.moved_frame()
-            if moved is not None:
-                self.broadcast(moved)
+        self.stage.show(self.stage.given, self.time)
+        moved = self.stage.moved_frame()
+        if moved is not None:
+            self.broadcast(moved)
 
     def broadcast(self, frame: Frame, leave_out: Client | None = None) -> None:
         """Send an event to all pages, or to all but one."""

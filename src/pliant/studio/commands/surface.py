@@ -135,7 +135,17 @@ def move(session: Session, request: Request) -> Frame:
     return ongoing(session, request).preview(request)
 
 
-command("surface.commit")(commit)
+@command("surface.commit")
+def let_go(session: Session, request: Request) -> None:
+    """Let go of the handle, where it is: what is left of a long iteration goes on in the background."""
+    drag = ongoing(session, request)
+    near = isinstance(drag, SurfaceDrag) and drag.suppose()
+    commit(session, request)
+    if near:
+        binding = session.shown.binding
+        session.jobs.run(drag.layer, lambda _: binding.settled(), lambda _: session.show_again())
+
+
 command("surface.cancel")(cancel)
 
 

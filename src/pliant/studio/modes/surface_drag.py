@@ -37,6 +37,7 @@ METHODS: dict[str, type[SurfaceDeformer]] = {"laplacian": LaplacianEdit, "arap":
 _PATIENCE = 0.028  # seconds of iterating in an answer: what is left of 50 goes into drawing
 _FIRST = 2  # iterations, before it is known how long one takes
 _MOST = 40
+_LONG = 2000  # vertices of a region: with fewer, the rest is iterated before the answer
 
 
 class SurfaceDrag(Dragging):
@@ -76,7 +77,7 @@ class SurfaceDrag(Dragging):
         self._begin(stack.replace(layer, deformer=_at_rest(deformer)))
         self._goal: Controls = np.array(bound.rest if goal is None else goal)
         if goal is not None and isinstance(self._drag.inner, IterativeDrag):
-            self._drag.inner.resume(bound.deform(goal))
+            self._drag.inner.resume(binding.image(layer))
         self._see(binding.below(layer), binding.bound(layer).rest)
         if method != self._method:
             self._switch(method)
@@ -151,6 +152,16 @@ class SurfaceDrag(Dragging):
             arrays["energies"] = inner.solution.energies
             arrays["converged"] = np.array([inner.solution.status == "converged"], np.uint8)
         return touched
+
+    def suppose(self) -> bool:
+        """Whether what is left of the iteration is long: then where it has arrived stands for its end."""
+        layer, inner = self.stack[self.layer], self._drag.inner
+        edit = edit_of(self.stack, self.layer)
+        short = np.arange(len(inner.points))[np.asarray(edit.roi)].size < _LONG
+        if self._method != "arap" or short or not isinstance(inner, IterativeDrag) or inner.solution is None:
+            return False
+        self._session.shown.binding.suppose(layer, inner.points)
+        return True
 
     @property
     def stack(self) -> Stack:
