@@ -127,20 +127,23 @@ class MeshDeformer(Deformer):
 class Binding(ABC):
     """A deformer bound to a target. Immutable, thread-safe, and it pickles."""
 
+    _points: Points
+    _controls: Controls
+
     @property
     @abstractmethod
     def rest(self) -> Controls:
         """The rest controls."""
 
     @property
-    @abstractmethod
     def controls(self) -> Controls:
         """The controls that the deformer had when it was bound."""
+        return self._controls
 
     @property
-    @abstractmethod
     def points(self) -> Points:
         """(n, 3) the target's points, read-only."""
+        return self._points
 
     @abstractmethod
     def deform(self, controls: ArrayLike | None = None, out: Points | None = None) -> Points:

@@ -128,14 +128,6 @@ class CaricatureBinding(Binding):
     def rest(self) -> Controls:
         return np.array([0.0] + [1.0] * len(self._fields))
 
-    @property
-    def controls(self) -> Controls:
-        return self._controls
-
-    @property
-    def points(self) -> Points:
-        return self._points
-
     def deform(self, controls: ArrayLike | None = None, out: Points | None = None) -> Points:
         amount, *gains = self._checked(controls)
         target = checked_out(out, len(self._points))

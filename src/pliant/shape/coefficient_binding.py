@@ -34,14 +34,6 @@ class CoefficientBinding(LinearBinding):
         """(k,) zeros: the mean."""
         return np.zeros(self._basis.count)
 
-    @property
-    def controls(self) -> Controls:
-        return self._controls
-
-    @property
-    def points(self) -> Points:
-        return self._points
-
     def deform(self, controls: ArrayLike | None = None, out: Points | None = None) -> Points:
         target = checked_out(out, len(self._points))
         np.add(self._base, self._basis.apply(self._checked(controls)), out=target)

@@ -47,14 +47,6 @@ class ConditionedBinding(LinearBinding):
     def rest(self) -> Controls:
         return np.concatenate([np.zeros(self._basis.count), self._landmarks.reshape(-1)])
 
-    @property
-    def controls(self) -> Controls:
-        return self._controls
-
-    @property
-    def points(self) -> Points:
-        return self._points
-
     def deform(self, controls: ArrayLike | None = None, out: Points | None = None) -> Points:
         target = checked_out(out, len(self._points))
         away = self._checked(controls) - self.rest

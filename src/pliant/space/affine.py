@@ -166,16 +166,6 @@ class AffineBinding(LinearBinding):
         """(12,) the identity."""
         return _IDENTITY.copy()
 
-    @property
-    def controls(self) -> Controls:
-        """(12,) the map's numbers when it was bound."""
-        return self._controls
-
-    @property
-    def points(self) -> Points:
-        """(n, 3) the target's points, read-only."""
-        return self._points
-
     def deform(self, controls: ArrayLike | None = None, out: Points | None = None) -> Points:
         """(n, 3) the mapped points."""
         result = checked_out(out, len(self._points))

@@ -30,11 +30,6 @@ class AxialBinding(Binding):
         """(p,) the deformer's parameters when it was bound."""
         return self._deformer.controls
 
-    @property
-    def points(self) -> Points:
-        """(n, 3) the target's points, read-only."""
-        return self._points
-
     def deform(self, controls: ArrayLike | None = None, out: Points | None = None) -> Points:
         """(n, 3) the deformed points."""
         return self._at(controls)._moved_into(self._points, checked_out(out, len(self._points)))

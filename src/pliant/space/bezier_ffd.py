@@ -12,7 +12,7 @@ from typing import Literal, Self
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pliant.deformer import Controls, SpaceDeformer, Target, checked_controls
+from pliant.deformer import Controls, Target
 from pliant.errors import InvalidDeformer, OutsideDomain
 from pliant.mesh import Points, PolygonMesh, as_points
 from pliant.numerics.lattices.bases import BernsteinPoints
@@ -22,6 +22,7 @@ from pliant.numerics.lattices.polynomial_cells import PolynomialCells
 from pliant.numerics.maps.newton import Solution, solve
 from pliant.numerics.ragged import frozen
 from pliant.space.box import box_around, checked_axes, thickened
+from pliant.space.control_lattice import ControlLattice, spread
 from pliant.space.control_maps import Padding
 from pliant.space.lattice import LatticeBinding
 
@@ -32,7 +33,7 @@ TOLERANCE = 1e-9  # in parameters: a box's own corners must not fall outside it 
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class BezierFFD(SpaceDeformer):
+class BezierFFD(ControlLattice):
     """Free-form deformation of a parallelepiped by Bernstein polynomials.
 
     A point X = origin + s S + t T + u U has parameters (s, t, u) in [0, 1]^3 (Sederberg & Parry 1986, eq. 1); it
@@ -131,25 +132,10 @@ class BezierFFD(SpaceDeformer):
             displacements=np.zeros((*counts, 3)), origin=origin, edges=frame * thick, patches=patches, outside=outside
         )
 
-    @property
-    def shape(self) -> tuple[int, int, int]:
-        """Numbers of control points along each axis."""
-        x, y, z = self.displacements.shape[:3]
-        return x, y, z
-
     @cached_property
     def rest(self) -> Controls:
         """(l + 1, m + 1, n + 1, 3) positions of the control points at rest (Sederberg & Parry 1986, eq. 2)."""
-        steps = [np.linspace(0, 1, n) if n > 1 else np.array([0.5]) for n in self.shape]
-        parameters = np.stack(np.meshgrid(*steps, indexing="ij"), axis=-1)
-        return frozen(self.origin + parameters @ self.edges.T, np.float64)
-
-    @property
-    def controls(self) -> Controls:
-        return self.rest + self.displacements
-
-    def moved(self, controls: ArrayLike) -> Self:
-        return replace(self, displacements=checked_controls(controls, self.rest.shape) - self.rest)
+        return spread(self.shape, self.origin, self.edges)
 
     def moved_smoothly(self, moves: dict[tuple[int, int, int], ArrayLike]) -> Self:
         """Move control points of a block of patches, and with each those that keep the joints C1.

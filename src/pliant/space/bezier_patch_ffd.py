@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
-from typing import Literal, Self
+from typing import Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pliant.deformer import Binding, Controls, SpaceDeformer, Target, checked_controls, checked_out
+from pliant.deformer import Binding, Controls, Target, checked_controls, checked_out
 from pliant.errors import InvalidDeformer, OutsideDomain
 from pliant.mesh import Points, PolygonMesh, as_points
 from pliant.numerics.compute.chunks import for_chunks
@@ -17,6 +17,7 @@ from pliant.numerics.lattices.patch_surface import PatchSurface, bernstein_sum, 
 from pliant.numerics.ragged import frozen
 from pliant.space.bezier_ffd import TOLERANCE, Outside
 from pliant.space.box import box_around, thickened
+from pliant.space.control_lattice import ControlLattice
 
 Floats = NDArray[np.float64]
 
@@ -25,7 +26,7 @@ CHUNK = 8192
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class BezierPatchFFD(SpaceDeformer):
+class BezierPatchFFD(ControlLattice):
     """Free-form deformation of a plane into a Bézier surface of any degree.
 
     A point X = origin + s S + t T + h N, with N the plane's unit normal, moves to P(s, t) + h n(s, t): P is the
@@ -116,13 +117,6 @@ class BezierPatchFFD(SpaceDeformer):
         grid = np.stack(np.meshgrid(s, t, indexing="ij"), axis=-1)[:, :, None]
         return frozen(self.origin + grid @ self.edges.T, np.float64)
 
-    @property
-    def controls(self) -> Controls:
-        return self.rest + self.displacements
-
-    def moved(self, controls: ArrayLike) -> Self:
-        return replace(self, displacements=checked_controls(controls, self.rest.shape) - self.rest)
-
     def bind(self, target: Target) -> PatchBinding:
         return PatchBinding(self, as_points(target))
 
@@ -181,10 +175,6 @@ class PatchBinding(Binding):
     @property
     def controls(self) -> Controls:
         return self._patch.controls
-
-    @property
-    def points(self) -> Points:
-        return self._points
 
     def deform(self, controls: ArrayLike | None = None, out: Points | None = None) -> Points:
         moves, target = self._moves(controls), checked_out(out, len(self._points))

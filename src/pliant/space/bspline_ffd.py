@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any, Literal, Self
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pliant.deformer import Controls, SpaceDeformer, Target, checked_controls
+from pliant.deformer import Controls, Target
 from pliant.errors import InvalidDeformer
 from pliant.mesh import Points, PolygonMesh, as_points
 from pliant.numerics.lattices.cells import BSPLINE, CellGrid, CellPoints, evaluate_once
@@ -22,6 +22,7 @@ from pliant.numerics.lattices.polynomial_cells import PolynomialCells
 from pliant.numerics.maps.newton import Solution, solve
 from pliant.numerics.ragged import frozen
 from pliant.space.box import box_around, checked_axes, thickened
+from pliant.space.control_lattice import ControlLattice, spaced
 from pliant.space.control_maps import Padding
 from pliant.space.lattice import LatticeBinding
 
@@ -33,7 +34,7 @@ _LAYERS = {"clamp": 2, "zero": 3, "identity": 0}  # values beyond the lattice on
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class BSplineFFD(SpaceDeformer):
+class BSplineFFD(ControlLattice):
     """Free-form deformation by a uniform cubic B-spline lattice.
 
     Parameters
@@ -130,24 +131,10 @@ class BSplineFFD(SpaceDeformer):
             displacements=np.zeros((*shape, 3)), origin=origin + frame @ middle, spacing=spacing, axes=frame, edge=edge
         )
 
-    @property
-    def shape(self) -> tuple[int, int, int]:
-        """Numbers of control points along each axis."""
-        x, y, z = self.displacements.shape[:3]
-        return x, y, z
-
     @cached_property
     def rest(self) -> Controls:
         """(nx, ny, nz, 3) positions of the control points at rest."""
-        index = np.stack(np.meshgrid(*(np.arange(n) for n in self.shape), indexing="ij"), axis=-1)
-        return frozen(self.origin + (index * self.spacing) @ self.axes.T, np.float64)
-
-    @property
-    def controls(self) -> Controls:
-        return self.rest + self.displacements
-
-    def moved(self, controls: ArrayLike) -> Self:
-        return replace(self, displacements=checked_controls(controls, self.rest.shape) - self.rest)
+        return spaced(self.shape, self.origin, self.spacing, self.axes)
 
     def bind(self, target: Target) -> LatticeBinding:
         points = as_points(target)

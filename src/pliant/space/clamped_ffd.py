@@ -7,19 +7,19 @@ aerostructural optimization").
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
-from typing import Any, Self
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pliant.deformer import Controls, SpaceDeformer, Target, checked_controls
+from pliant.deformer import Controls, Target
 from pliant.mesh import Points, PolygonMesh, as_points
 from pliant.numerics.lattices.cells import BERNSTEIN, CellGrid, CellPoints
 from pliant.numerics.lattices.clamped import parameters, pieces, spans
-from pliant.numerics.ragged import frozen
 from pliant.space.bezier_ffd import TOLERANCE, BezierFFD
+from pliant.space.control_lattice import ControlLattice, spread
 from pliant.space.control_maps import Extraction, Shares
 from pliant.space.lattice import LatticeBinding
 
@@ -27,7 +27,7 @@ Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class ClampedFFD(SpaceDeformer):
+class ClampedFFD(ControlLattice):
     """Free-form deformation of a parallelepiped by clamped uniform B-splines of order min(4, n) along each axis.
 
     With up to four control points an axis it is a Bernstein lattice. Points outside the box stay.
@@ -74,25 +74,10 @@ class ClampedFFD(SpaceDeformer):
         box = BezierFFD.around(target, shape=shape, margin=margin)
         return cls(displacements=box.displacements, origin=box.origin, edges=box.edges)
 
-    @property
-    def shape(self) -> tuple[int, int, int]:
-        """Numbers of control points along each axis."""
-        x, y, z = self.displacements.shape[:3]
-        return x, y, z
-
     @cached_property
     def rest(self) -> Controls:
         """(nx, ny, nz, 3) positions of the control points at rest, evenly spaced."""
-        steps = [np.linspace(0, 1, n) if n > 1 else np.array([0.5]) for n in self.shape]
-        places = np.stack(np.meshgrid(*steps, indexing="ij"), axis=-1)
-        return frozen(self.origin + places @ self.edges.T, np.float64)
-
-    @property
-    def controls(self) -> Controls:
-        return self.rest + self.displacements
-
-    def moved(self, controls: ArrayLike) -> Self:
-        return replace(self, displacements=checked_controls(controls, self.rest.shape) - self.rest)
+        return spread(self.shape, self.origin, self.edges)
 
     def bind(self, target: Target) -> LatticeBinding:
         points = as_points(target)

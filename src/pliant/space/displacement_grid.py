@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any, Literal, Self
+from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pliant.deformer import Controls, SpaceDeformer, Target, checked_controls
+from pliant.deformer import Controls, Target
 from pliant.errors import InvalidDeformer
 from pliant.mesh import Points, as_points
 from pliant.numerics.lattices.cells import BSPLINE, CellGrid, CellPoints
@@ -17,6 +17,7 @@ from pliant.numerics.lattices.grid_points import GridPoints
 from pliant.numerics.lattices.polynomial_cells import PolynomialCells
 from pliant.numerics.ragged import frozen
 from pliant.space.box import checked_axes
+from pliant.space.control_lattice import ControlLattice, spaced
 from pliant.space.control_maps import ControlMap, Extraction, Padding
 from pliant.space.lattice import LatticeBinding
 
@@ -27,7 +28,7 @@ Direction = Literal["push-forward", "pull-back"]
 
 
 @dataclass(frozen=True, eq=False, kw_only=True)
-class DisplacementGrid(SpaceDeformer):
+class DisplacementGrid(ControlLattice):
     """Displacements at the nodes of a regular grid, interpolated in between.
 
     Its controls are the positions of the nodes.
@@ -102,24 +103,10 @@ class DisplacementGrid(SpaceDeformer):
         for name, value in values.items():
             object.__setattr__(self, name, frozen(value, np.float64))
 
-    @property
-    def shape(self) -> tuple[int, int, int]:
-        """Numbers of nodes along each axis."""
-        x, y, z = self.displacements.shape[:3]
-        return x, y, z
-
     @cached_property
     def rest(self) -> Controls:
         """(nx, ny, nz, 3) positions of the nodes at rest."""
-        index = np.stack(np.meshgrid(*(np.arange(n) for n in self.shape), indexing="ij"), axis=-1)
-        return frozen(self.origin + (index * self.spacing) @ self.axes.T, np.float64)
-
-    @property
-    def controls(self) -> Controls:
-        return self.rest + self.displacements
-
-    def moved(self, controls: ArrayLike) -> Self:
-        return replace(self, displacements=checked_controls(controls, self.rest.shape) - self.rest)
+        return spaced(self.shape, self.origin, self.spacing, self.axes)
 
     def bind(self, target: Target) -> LatticeBinding:
         points = as_points(target)

@@ -71,11 +71,6 @@ class InverseBinding(Binding):
         """The controls of the inverted deformer."""
         return self._deformer.controls
 
-    @property
-    def points(self) -> Points:
-        """(n, 3) the target's points, read-only."""
-        return self._points
-
     def deform(self, controls: ArrayLike | None = None, out: Points | None = None) -> Points:
         """(n, 3) the pre-images."""
         result = checked_out(out, len(self._points))

@@ -119,11 +119,6 @@ class PlacedBinding(Binding):
         """The controls of the deformer when it was bound."""
         return self._inner.controls
 
-    @property
-    def points(self) -> Points:
-        """(n, 3) the target's points, read-only."""
-        return self._points
-
     def deform(self, controls: ArrayLike | None = None, out: Points | None = None) -> Points:
         """(n, 3) the deformed points: the target plus what the deformer adds, so that rest stays exact."""
         result = checked_out(out, len(self._points))

@@ -24,13 +24,3 @@ class PointBinding(Binding):
     def rest(self) -> Controls:
         """(m, 3) the controls at rest."""
         return self._rest
-
-    @property
-    def controls(self) -> Controls:
-        """(m, 3) the controls when it was bound."""
-        return self._controls
-
-    @property
-    def points(self) -> Points:
-        """(n, 3) the target's points, read-only."""
-        return self._points

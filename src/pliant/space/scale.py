@@ -118,16 +118,6 @@ class ScaleBinding(LinearBinding):
         """(3,) ones."""
         return np.ones(3)
 
-    @property
-    def controls(self) -> Controls:
-        """(3,) the factors when it was bound."""
-        return self._controls
-
-    @property
-    def points(self) -> Points:
-        """(n, 3) the target's points, read-only."""
-        return self._points
-
     def deform(self, controls: ArrayLike | None = None, out: Points | None = None) -> Points:
         """(n, 3) the scaled points."""
         result = checked_out(out, len(self._points))

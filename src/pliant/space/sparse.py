@@ -46,10 +46,6 @@ class SparseBinding(LinearBinding):
     def controls(self) -> Controls:
         return np.asarray(self._rest + self._displacements)
 
-    @property
-    def points(self) -> Points:
-        return self._points
-
     def deform(self, controls: ArrayLike | None = None, out: Points | None = None) -> Points:
         given = self._displacements if controls is None else checked_controls(controls, self._rest.shape) - self._rest
         target = checked_out(out, len(self._points))

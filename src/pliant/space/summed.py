@@ -84,11 +84,6 @@ class SummedBinding(Binding):
         """(p,) the controls of all deformers when they were bound."""
         return _flat([part.controls for part in self._parts])
 
-    @property
-    def points(self) -> Points:
-        """(n, 3) the target's points, read-only."""
-        return self._points
-
     def deform(self, controls: ArrayLike | None = None, out: Points | None = None) -> Points:
         """(n, 3) the points, moved by all displacements."""
         result = checked_out(out, len(self._points))

@@ -127,10 +127,6 @@ class SurfaceBinding(Binding):
     def controls(self) -> Controls:
         return self._goal
 
-    @property
-    def points(self) -> Points:
-        return self._points
-
     def deform(self, controls: ArrayLike | None = None, out: Points | None = None) -> Points:
         goal, result = self._checked(controls), checked_out(out, len(self._points))
         np.copyto(result, self._points)

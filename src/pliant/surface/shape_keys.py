@@ -92,16 +92,6 @@ class ShapeKeysBinding(LinearBinding):
         """(k,) zeros."""
         return np.zeros(len(self._moves))
 
-    @property
-    def controls(self) -> Controls:
-        """(k,) the weights when it was bound."""
-        return self._controls
-
-    @property
-    def points(self) -> Points:
-        """(n, 3) the target's points, read-only."""
-        return self._points
-
     def deform(self, controls: ArrayLike | None = None, out: Points | None = None) -> Points:
         """(n, 3) the points with so much of each key."""
         result = checked_out(out, len(self._points))
