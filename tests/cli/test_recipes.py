@@ -63,6 +63,22 @@ def test_export_recipe_writes_what_apply_reads(run, cube, project, tmp_path):
     assert np.allclose(pl.read(tmp_path / "out.obj").points, pl.load_project(project).deformed().points)
 
 
+def test_files_in_pieces_come_out_as_whole_ones_do(run, cube, recipe, tmp_path):
+    pl.write(pl.read(cube).replace(carrier=None), tmp_path / "cube.ply")
+    for command in (["apply", recipe, tmp_path / "cube.ply"], ["deform", tmp_path / "cube.ply", "--twist", "angle=90"]):
+        assert run(*command, "-o", tmp_path / "whole.ply").exit_code == 0
+        done = run(*command, "-o", tmp_path / "pieces.ply", "--stream", "--json")
+        assert done.exit_code == 0, done.stderr
+        assert json.loads(done.stdout)["points"] == len(pl.read(cube).points)
+        whole, pieces = pl.read(tmp_path / "whole.ply"), pl.read(tmp_path / "pieces.ply")
+        assert np.allclose(whole.points, pieces.points, atol=1e-12)
+        assert np.array_equal(whole.faces.flat, pieces.faces.flat)
+    done = run("apply", recipe, cube, "-o", tmp_path / "out.obj", "--stream")
+    assert done.exit_code == 3
+    assert "only binary PLY and STL" in done.stderr
+    assert run("apply", recipe, tmp_path / "cube.ply", "-o", "o.ply", "--stream", "--time", "1").exit_code == 2
+
+
 def test_recipes_that_are_exported_to_fit_do(run, cube, project, tmp_path):
     mesh = pl.read(cube)
     pl.write(mesh.with_points(10 * mesh.points + [1, 2, 3]), tmp_path / "large.obj")

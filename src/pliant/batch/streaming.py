@@ -39,9 +39,7 @@ def stream(deformer: SpaceDeformer | Stack, points: Any) -> Any:
         Dask is not installed.
     """
     array = _dask_array()
-    whole = _needs_all(deformer)
-    if whole:
-        raise InvalidTarget(f"{whole}: it cannot be applied piece by piece (deform the mesh itself)")
+    refuse_surfaces(deformer)
     if not isinstance(points, array.Array) or points.ndim != 2 or points.shape[1] != 3:
         raise InvalidTarget(
             f"an (n, 3) Dask array is needed, not {getattr(points, 'shape', type(points).__name__)}: make one by "
@@ -96,6 +94,19 @@ def stream_file(deformer: SpaceDeformer | Stack, path: Path | str, output: Path 
 def _piece(points: Any, deformer: SpaceDeformer | Stack) -> Points:
     piece = np.ascontiguousarray(points, np.float64)
     return np.asarray(deformer(piece)) if len(piece) else piece
+
+
+def refuse_surfaces(deformer: object) -> None:
+    """Make sure that a deformer needs no more than a piece of a shape.
+
+    Raises
+    ------
+    InvalidTarget
+        It needs the whole shape.
+    """
+    whole = _needs_all(deformer)
+    if whole:
+        raise InvalidTarget(f"{whole}: it cannot be applied piece by piece (deform the mesh itself)")
 
 
 def _needs_all(deformer: object) -> str:

@@ -13,6 +13,7 @@ from pliant.cli.cage import CageOption, Coordinates, CoordinatesOption, PosedOpt
 from pliant.cli.choice import Choice
 from pliant.cli.deformer_options import STEPS
 from pliant.cli.part import ToleranceOption, deform_part, is_part
+from pliant.cli.pieces import deform_in_pieces
 from pliant.cli.session import Session
 
 if TYPE_CHECKING:
@@ -42,6 +43,7 @@ def deform(
     inverse: opt.InverseOption = False,
     mesh_space: opt.MeshSpaceOption = opt.MeshSpace.as_is,
     tolerance: ToleranceOption = None,
+    stream: opt.StreamOption = False,
     strict: opt.StrictOption = False,
     json: opt.JsonOption = False,
     quiet: opt.QuietOption = False,
@@ -72,6 +74,8 @@ def deform(
     with Session(json=json, quiet=quiet) as session:
         if is_part(mesh):
             deform_part(session, mesh, output, choice.required, tolerance, strict=strict)
+        elif stream:
+            deform_in_pieces(session, mesh, output, choice.required)
         else:
             deform_file(session, mesh, output, choice, strict=strict)
 

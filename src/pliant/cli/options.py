@@ -73,6 +73,9 @@ InverseOption = Annotated[bool, typer.Option("--inverse", help="Apply the invers
 MeshSpaceOption = Annotated[
     MeshSpace, typer.Option(help="Axes of the mesh; transform files are RAS. LPS turns x and y before and after.")
 ]
+StreamOption = Annotated[
+    bool, typer.Option("--stream", help="Binary PLY and STL piece by piece: meshes larger than memory.")
+]
 StrictOption = Annotated[bool, typer.Option("--strict", help="Refuse to write a file that would lose something.")]
 JsonOption = Annotated[bool, typer.Option("--json", help="Print the result as JSON on stdout.")]
 QuietOption = Annotated[bool, typer.Option("--quiet", "-q", help="No progress on stderr.")]

@@ -11,6 +11,7 @@ import typer
 
 from pliant.cli import options as opt
 from pliant.cli.part import ToleranceOption, deform_part, is_part
+from pliant.cli.pieces import deform_in_pieces
 from pliant.cli.session import Session
 from pliant.cli.written import write_mesh
 
@@ -52,15 +53,23 @@ def apply(
         float | None, typer.Option(metavar="SECONDS", show_default=False, help="A moment of its motion.")
     ] = None,
     tolerance: ToleranceOption = None,
+    stream: opt.StreamOption = False,
     strict: opt.StrictOption = False,
     json: opt.JsonOption = False,
     quiet: opt.QuietOption = False,
 ) -> None:
     """Deform a mesh, or a part from CAD, by a recipe, a project or a template."""
     with Session(json=json, quiet=quiet) as session:
+        choice = partial(_stack, recipe, intensity=intensity, up=up)  # for the mesh, the part's mesh, or a box
+        if stream and time is not None:
+            raise typer.BadParameter(
+                "a moment of a motion needs the whole mesh: leave out --stream", param_hint="--time"
+            )
         if is_part(mesh):
-            choice = partial(_stack, recipe, intensity=intensity, up=up)  # for the part's own mesh
             deform_part(session, mesh, output, choice, tolerance, strict=strict)
+            return
+        if stream:
+            deform_in_pieces(session, mesh, output, choice)
             return
         import numpy as np
 
@@ -70,7 +79,7 @@ def apply(
         session.say(f"read {mesh}: {len(shape.points):,} points, {len(shape.faces):,} faces")
         with session.patience():
             if time is None:
-                moved = _stack(recipe, shape, intensity, up)(shape)
+                moved = choice(shape)(shape)
             else:
                 moved = _clip(recipe, shape, intensity, up, None, None).sample(time)
         length = np.linalg.norm(moved.points - shape.points, axis=1)

@@ -75,9 +75,9 @@ def parse(source: Source) -> Header:
         )
     order: Literal["", "<", ">"] | None = None
     elements: list[Element] = []
-    at = 0
-    for raw in re.split(rb"\r\n|\n|\r", source.data[: end.start()])[1:]:
-        at = source.data.index(raw, at) if raw else at
+    head, at = source.data[: end.start()], 0
+    for raw in re.split(rb"\r\n|\n|\r", head)[1:]:
+        at = head.index(raw, at) if raw else at
         words = text_of(raw).split()
         try:
             if words and words[0] == "format":
