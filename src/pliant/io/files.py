@@ -20,7 +20,7 @@ def read_bytes(path: Path | str) -> bytes:
         It is not there, is a folder, is empty, or the system refuses it.
     """
     try:
-        data = Path(path).read_bytes()
+        data = (path if isinstance(path, Path) else Path(path)).read_bytes()
     except (OSError, ValueError) as error:  # ValueError: a name with a zero byte
         cause = getattr(error, "strerror", None) or str(error)
         raise UnreadableFile(path, cause, "check the path and its permissions") from error
@@ -42,7 +42,7 @@ def replacing(path: Path | str, *, durable: bool = False) -> Iterator[Path]:
         The disk is full, or the place is not writable.
     """
     try:
-        with _renamed(Path(path), durable=durable) as temporary:
+        with _renamed(path if isinstance(path, Path) else Path(path), durable=durable) as temporary:
             yield temporary
     except OSError as error:
         raise UnwritableFile(path, error.strerror or str(error)) from error
@@ -80,7 +80,7 @@ def _begun(target: Path) -> Path:
 
 def write_bytes(path: Path | str, parts: bytes | Iterable[bytes | memoryview]) -> None:
     """Write a file atomically from its bytes, or from pieces of them; raises as :func:`replacing` does."""
-    with replacing(path) as temporary, temporary.open("wb") as stream:
+    with replacing(path) as temporary, temporary.open("r+b") as stream:  # cut to nothing, it would go to disk at once
         if isinstance(parts, bytes):
             stream.write(parts)
         else:

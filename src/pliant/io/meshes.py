@@ -130,8 +130,8 @@ def write(
     LossRefused
         Something would be lost, and ``strict`` is set; nothing is written.
     """
-    path = Path(file) if isinstance(file, (str, Path)) else Path(name or _stream_name(file))
-    plain = Path(_plain(path))
+    path = file if isinstance(file, Path) else Path(file if isinstance(file, str) else name or _stream_name(file))
+    plain = path.with_suffix("") if path.suffix.lower() == ".gz" else path
     target = _writer(plain, mesh)
     empty = np.flatnonzero(mesh.faces.lengths == 0)
     if len(empty):
