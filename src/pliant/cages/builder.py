@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Self
 
@@ -67,6 +68,11 @@ class CageBuilder:
         ----------
         origin, normal
             (3,) a point inside the limb, (3,) a direction along it, of any length.
+
+        Raises
+        ------
+        InvalidParameter
+            Numbers that are not finite, or a normal without length.
         """
         place, direction = np.asarray(origin, np.float64), np.asarray(normal, np.float64)
         for name, value in (("origin", place), ("normal", direction)):
@@ -86,6 +92,11 @@ class CageBuilder:
             ``"x"``, ``"y"`` or ``"z"``.
         count
             How many.
+
+        Raises
+        ------
+        InvalidParameter
+            No such axis.
         """
         if axis not in ("x", "y", "z"):
             raise InvalidParameter(f"axis is {axis!r}; it must be 'x', 'y' or 'z'")
@@ -108,7 +119,7 @@ class CageBuilder:
         """
         return self._linking(self._parted()).linked({})[0]
 
-    def build(self, rounds: int = 3) -> PolygonMesh:
+    def build(self, rounds: int = 3, *, progress: Callable[[float], object] = lambda _: None) -> PolygonMesh:
         """The cage.
 
         Regions whose faces do not enclose what is in them, or cut others, are linked along the surface, with more
@@ -118,6 +129,8 @@ class CageBuilder:
         ----------
         rounds
             How often it is made smoother and tighter.
+        progress
+            Told how far it is, from 0 to 1, before each attempt; what it raises ends the work.
 
         Raises
         ------
@@ -127,9 +140,10 @@ class CageBuilder:
         """
         parts, clearance = self._parted(), 0.1 * self.margin * self.mesh.diagonal
         regions = parts.of_vertices(len(self.mesh.points))
-        for share in _SHARES:
+        for tried, share in enumerate(_SHARES):
             linking, places, near = self._linking(parts, share), dict[int, int](), dict[int, Points]()
             for attempt in range(_ATTEMPTS):
+                progress((tried + attempt / _ATTEMPTS) / len(_SHARES))
                 linked, owners = linking.linked(places, near)
                 rough = untangled(linked, self.mesh)
                 crossed = self_crossings(rough.points, rough.triangles)

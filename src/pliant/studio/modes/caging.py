@@ -53,8 +53,7 @@ class Plan:
     def build(self, mesh: PolygonMesh, progress: Callable[[float], None]) -> PolygonMesh:
         """The cage around a mesh."""
         if self.method == "cuts":
-            progress(0.2)
-            return self.builder(mesh).build()
+            return self.builder(mesh).build(progress=progress)
         if self.method == "box":
             return cage_from_box(mesh, _cells(mesh, self.vertices), self.margin)
         return build_cage(
