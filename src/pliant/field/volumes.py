@@ -42,6 +42,11 @@ def volume_gradient(mesh: PolygonMesh) -> Points:
 
     A step along one axis alone, of however many points, changes the volume by exactly the gradient times the step.
 
+    Parameters
+    ----------
+    mesh
+        Closed; any polygons.
+
     Raises
     ------
     InvalidMesh

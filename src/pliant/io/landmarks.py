@@ -83,6 +83,11 @@ class Landmarks:
     def in_space(self, space: Space) -> Self:
         """The same landmarks with x and y pointing the way that a space has them.
 
+        Parameters
+        ----------
+        space
+            ``"LPS"`` or ``"RAS"``.
+
         Raises
         ------
         InvalidParameter
@@ -95,7 +100,13 @@ class Landmarks:
         return replace(self, points=self.points * signs, space=space, covariances=turned)
 
     def common(self, other: Landmarks) -> tuple[tuple[str, ...], Floats, Floats]:
-        """The names that both have, in this one's order, and the (k, 3) positions of each."""
+        """The names that both have, in this one's order, and the (k, 3) positions of each.
+
+        Parameters
+        ----------
+        other
+            Other landmarks, in the same space.
+        """
         names = tuple(name for name in self.names if name in set(other.names))
         return (
             names,

@@ -129,6 +129,13 @@ class Clip:
     def without_key(self, layer: str, field: str, time: float) -> Clip:
         """The clip without a key; a track without keys is gone.
 
+        Parameters
+        ----------
+        layer, field
+            Whose key.
+        time
+            When it is, in seconds.
+
         Raises
         ------
         InvalidParameter
@@ -141,12 +148,28 @@ class Clip:
         return replace(self, tracks=tuple(track for track in changed if track is not None))
 
     def on(self, mesh: PolygonMesh, stack: Stack) -> Clip:
-        """The clip with another mesh and stack; keys of layers that are not there any more are left out."""
+        """The clip with another mesh and stack; keys of layers that are not there any more are left out.
+
+        Parameters
+        ----------
+        mesh
+            With as many points as the motion, where there is one.
+        stack
+            The layers.
+        """
         tracks = tuple(track for track in self.tracks if track.layer in stack.names)
         return replace(self, mesh=mesh, stack=stack, tracks=tracks)
 
     def renamed(self, old: str, new: str, stack: Stack) -> Clip:
-        """The clip on a stack in which a layer has another name: its keys go with it."""
+        """The clip on a stack in which a layer has another name: its keys go with it.
+
+        Parameters
+        ----------
+        old, new
+            The names.
+        stack
+            The stack with the new one.
+        """
         tracks = tuple(replace(track, layer=new) if track.layer == old else track for track in self.tracks)
         return replace(self, stack=stack, tracks=tracks)
 
@@ -163,7 +186,13 @@ class Clip:
         return tuple(min(i / self.fps, self.period) for i in range(last))
 
     def stack_at(self, time: float) -> Stack:
-        """The stack as the keys say at a time."""
+        """The stack as the keys say at a time.
+
+        Parameters
+        ----------
+        time
+            In seconds; beyond the end, as the clip's ending says.
+        """
         moment, stack = self._moment(time), self.stack
         for name in dict.fromkeys(track.layer for track in self.tracks):
             values = {track.field: track.at(moment) for track in self.tracks if track.layer == name}
@@ -171,18 +200,36 @@ class Clip:
         return stack
 
     def base_at(self, time: float) -> Points | None:
-        """(n, 3) where the mesh's own motion has put its points at a time; None where it has none."""
+        """(n, 3) where the mesh's own motion has put its points at a time; None where it has none.
+
+        Parameters
+        ----------
+        time
+            In seconds.
+        """
         if self.motion is None:
             return None
         frame = self.motion.at(self._moment(time))
         return frame if self.amplify == 1.0 else self.mesh.points + self.amplify * (frame - self.mesh.points)
 
     def sample(self, time: float) -> PolygonMesh:
-        """The mesh at a time, its normals too."""
+        """The mesh at a time, its normals too.
+
+        Parameters
+        ----------
+        time
+            In seconds; beyond the end, as the clip's ending says.
+        """
         return self.posed(Frame(time, self._points(self._binding(), time)))
 
     def posed(self, frame: Frame) -> PolygonMesh:
-        """The mesh as a frame of this clip has it, its normals too."""
+        """The mesh as a frame of this clip has it, its normals too.
+
+        Parameters
+        ----------
+        frame
+            One of :meth:`frames`.
+        """
         points = frame.points
         if self.motion is None and self.intensity == 1.0:
             return self.mesh.with_points(points, normals=self.stack_at(frame.time)._normals(self.mesh, points))
@@ -206,7 +253,13 @@ class Clip:
             yield Frame(time, points)
 
     def sequence(self, progress: Progress | None = None) -> MeshSequence:
-        """All frames at once, as another clip's motion, or to be written."""
+        """All frames at once, as another clip's motion, or to be written.
+
+        Parameters
+        ----------
+        progress
+            As for :meth:`frames`.
+        """
         frames = list(self.frames(progress))
         return MeshSequence(np.stack([frame.points for frame in frames]), [frame.time for frame in frames])
 

@@ -91,7 +91,18 @@ class Layer:
         return new
 
     def moved(self, controls: ArrayLike) -> Layer:
-        """The same layer with its deformer's controls elsewhere: its structure stays."""
+        """The same layer with its deformer's controls elsewhere: its structure stays.
+
+        Parameters
+        ----------
+        controls
+            Shaped as the deformer's.
+
+        Raises
+        ------
+        InvalidControls
+            Another shape, or numbers that are not finite.
+        """
         new = replace(self, deformer=self.deformer.moved(controls))
         new.__dict__["structure"] = self.structure
         return new
@@ -125,6 +136,11 @@ class Layer:
 
     def fits(self, count: int) -> None:
         """Make sure that the mask has a weight for each of ``count`` points.
+
+        Parameters
+        ----------
+        count
+            How many points the target has.
 
         Raises
         ------

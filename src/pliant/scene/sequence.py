@@ -64,7 +64,13 @@ class MeshSequence:
         return float(times[-1] - times[0])
 
     def at(self, time: float) -> Points:
-        """(n, 3) the positions at a time, counted from the first frame."""
+        """(n, 3) the positions at a time, counted from the first frame.
+
+        Parameters
+        ----------
+        time
+            In seconds; between frames they are mixed, beyond the ends they stay.
+        """
         points, times = np.asarray(self.points), np.asarray(self.times)
         place = np.interp(time + times[0], times, np.arange(len(times)))
         first = min(int(place), len(times) - 1)
@@ -73,6 +79,14 @@ class MeshSequence:
         return here if part == 0 else np.asarray(here + part * (points[first + 1] - here))
 
     def amplified(self, rest: Points, factor: float) -> MeshSequence:
-        """The motion exaggerated: rest + factor (frame - rest)."""
+        """The motion exaggerated: rest + factor (frame - rest).
+
+        Parameters
+        ----------
+        rest
+            (n, 3) where the points rest.
+        factor
+            1 = as it is, 0 = at rest.
+        """
         points: NDArray[np.float64] = rest + factor * (np.asarray(self.points, np.float64) - rest)
         return MeshSequence(points, self.times)

@@ -91,6 +91,11 @@ class Stack(Deformer):
     def index(self, name: str) -> int:
         """Where a layer stands.
 
+        Parameters
+        ----------
+        name
+            Of the layer.
+
         Raises
         ------
         InvalidParameter
@@ -101,21 +106,65 @@ class Stack(Deformer):
         return self.names.index(name)
 
     def replace(self, name: str, **changes: Any) -> Self:
-        """The stack with some fields of a layer exchanged, as in ``replace("twist", muted=True)``."""
+        """The stack with some fields of a layer exchanged, as in ``replace("twist", muted=True)``.
+
+        Parameters
+        ----------
+        name
+            Of the layer.
+        changes
+            Fields of :class:`Layer`.
+
+        Raises
+        ------
+        InvalidParameter
+            There is no such layer.
+        """
         return self._exchanged(name, self[name].changed(**changes))
 
     def insert(self, index: int, layer: Layer) -> Self:
-        """The stack with one more layer before the one at ``index``; negative ones count from the end."""
+        """The stack with one more layer before the one at ``index``; negative ones count from the end.
+
+        Parameters
+        ----------
+        index
+            Its place, 0 being the first that deforms.
+        layer
+            With a name that no other has.
+
+        Raises
+        ------
+        InvalidParameter
+            Another layer has its name.
+        """
         layers = list(self.layers)
         layers.insert(index, layer)
         return self._with(layers)
 
     def append(self, layer: Layer) -> Self:
-        """The stack with one more layer on top."""
+        """The stack with one more layer on top.
+
+        Parameters
+        ----------
+        layer
+            With a name that no other has.
+
+        Raises
+        ------
+        InvalidParameter
+            Another layer has its name.
+        """
         return self._with((*self.layers, layer))
 
     def move(self, name: str, index: int) -> Self:
         """The stack with a layer at another place: ``index`` among all of them, 0 being the first.
+
+        Parameters
+        ----------
+        name
+            Of the layer.
+        index
+            Among all of them; negative ones count from the end.
 
         Raises
         ------
@@ -130,16 +179,49 @@ class Stack(Deformer):
         return self._with(layers)
 
     def remove(self, name: str) -> Self:
-        """The stack without a layer."""
+        """The stack without a layer.
+
+        Parameters
+        ----------
+        name
+            Of the layer.
+
+        Raises
+        ------
+        InvalidParameter
+            There is no such layer.
+        """
         at = self.index(name)
         return self._with((*self.layers[:at], *self.layers[at + 1 :]))
 
     def rename(self, name: str, new: str) -> Self:
-        """The stack with another name for a layer."""
+        """The stack with another name for a layer.
+
+        Parameters
+        ----------
+        name, new
+            What it is called, and will be.
+
+        Raises
+        ------
+        InvalidParameter
+            There is no such layer, or another has the new name.
+        """
         return self._exchanged(name, self[name].changed(name=new))
 
     def in_mode(self, mode: Mode) -> Self:
-        """The same layers, composed or added."""
+        """The same layers, composed or added.
+
+        Parameters
+        ----------
+        mode
+            ``"compose"`` or ``"add"``.
+
+        Raises
+        ------
+        InvalidParameter
+            It is neither.
+        """
         return exchanged(self, mode=mode)
 
     def _exchanged(self, name: str, layer: Layer) -> Self:

@@ -41,6 +41,11 @@ def templates() -> dict[str, Recipe]:
 def template(name: str) -> Recipe:
     """One template.
 
+    Parameters
+    ----------
+    name
+        As in :func:`templates`.
+
     Raises
     ------
     InvalidParameter

@@ -38,6 +38,15 @@ class BSplineKernel(Kernel):
     def multi_scale(cls, support: float, scale: float, levels: int) -> Kernel:
         """The sum over levels of B-spline kernels, each of half the support and half the scale of the one before.
 
+        Parameters
+        ----------
+        support
+            How far the first level reaches: a length.
+        scale
+            Its standard deviation of displacements: a length.
+        levels
+            How many: 1 to 20.
+
         Raises
         ------
         InvalidParameter

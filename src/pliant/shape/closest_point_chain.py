@@ -73,7 +73,13 @@ class ClosestPointDensity:
         return density + float(np.log(exponential_volume(state[:3]))) if self._free else density
 
     def distances(self, state: Floats) -> Floats:
-        """(m,) how far the points that look for the target are from it."""
+        """(m,) how far the points that look for the target are from it.
+
+        Parameters
+        ----------
+        state
+            (k,) coefficients, and the pose where it is sought too.
+        """
         return np.asarray(np.linalg.norm(self._found(state)[0], axis=1))
 
     def proposal(self, step: float = 0.5, slide: float = 100.0) -> NormalProposal:

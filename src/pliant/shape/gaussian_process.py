@@ -81,12 +81,24 @@ class GaussianProcess:
         return replace(self, places=places, values=seen, noise=error)
 
     def mean(self, points: Target) -> Points:
-        """(n, 3) the mean displacement at the points of a mesh, or at (n, 3) points."""
+        """(n, 3) the mean displacement at the points of a mesh, or at (n, 3) points.
+
+        Parameters
+        ----------
+        points
+            Where: a mesh, or (n, 3).
+        """
         places = as_points(points)
         return np.asarray(self.deformer()(places) - places)
 
     def covariance(self, points: Target) -> Floats:
-        """(n, 3, n, 3) the covariance of displacements at points, after what was observed."""
+        """(n, 3, n, 3) the covariance of displacements at points, after what was observed.
+
+        Parameters
+        ----------
+        points
+            Where: a mesh, or (n, 3); a hundred points take 720 kB.
+        """
         places = as_points(points)
         count = 3 * len(places)
         own = self._matrix(places, places)
@@ -142,6 +154,13 @@ class GaussianProcess:
 
         They are the symmetric root of the covariance times normal numbers: one seed's fields change gradually as the
         kernel does. For some hundred points, since it takes the cube of their number.
+
+        Parameters
+        ----------
+        points
+            Where: a mesh, or (n, 3).
+        seed
+            Of the random numbers; None = other ones each time.
         """
         places = as_points(points)
         normal = np.random.default_rng(seed).standard_normal(places.shape)

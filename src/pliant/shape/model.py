@@ -142,12 +142,32 @@ class ShapeModel(FittedModel):
         )
 
     def posterior_mean(self, where: Where, positions: ArrayLike, *, noise: ArrayLike) -> Points:
-        """(n, 3) the most likely shape given observations, as for :meth:`posterior`, but much faster."""
+        """(n, 3) the most likely shape given observations, as for :meth:`posterior`, but much faster.
+
+        Parameters
+        ----------
+        where
+            As for :meth:`posterior`.
+        positions
+            (m, 3) where it was seen.
+        noise
+            As for :meth:`posterior`.
+        """
         observed, residual, error = self._observed(where, positions, noise)
         return self.instance(most_likely(observed, residual, error))
 
     def log_likelihood(self, where: Where, positions: ArrayLike, *, noise: ArrayLike) -> float:
-        """The marginal likelihood of observations, as for :meth:`posterior`: its logarithm."""
+        """The marginal likelihood of observations, as for :meth:`posterior`: its logarithm.
+
+        Parameters
+        ----------
+        where
+            As for :meth:`posterior`.
+        positions
+            (m, 3) where it was seen.
+        noise
+            As for :meth:`posterior`.
+        """
         return log_likelihood(*self._observed(where, positions, noise))
 
     def deformer(

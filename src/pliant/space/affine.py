@@ -71,12 +71,38 @@ class Affine(SpaceDeformer):
 
     @classmethod
     def translation(cls, offset: ArrayLike) -> Self:
-        """Moves every point by (3,)."""
+        """Moves every point by (3,).
+
+        Parameters
+        ----------
+        offset
+            (3,) how far: lengths.
+
+        Raises
+        ------
+        InvalidDeformer
+            It is not three finite numbers.
+        """
         return cls.of(np.eye(3), offset)
 
     @classmethod
     def rotation(cls, axis: Axis, angle: float, origin: ArrayLike = (0.0, 0.0, 0.0)) -> Self:
-        """Turns about an axis, ``"x"``, ``"y"``, ``"z"`` or (3,), through a point, by radians, right-handed."""
+        """Turns about an axis, ``"x"``, ``"y"``, ``"z"`` or (3,), through a point, by radians, right-handed.
+
+        Parameters
+        ----------
+        axis
+            ``"x"``, ``"y"``, ``"z"``, or (3,) a direction of any length.
+        angle
+            In radians.
+        origin
+            (3,) a point of the axis, which stays.
+
+        Raises
+        ------
+        InvalidDeformer
+            The axis is none, or a number is not finite.
+        """
         x, y, z = _unit(axis)
         cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
         linear = np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross  # Rodrigues' formula
@@ -84,7 +110,20 @@ class Affine(SpaceDeformer):
 
     @classmethod
     def scaling(cls, factors: ArrayLike, origin: ArrayLike = (0.0, 0.0, 0.0)) -> Self:
-        """Scales by one factor, or by one along each axis, away from a point that stays."""
+        """Scales by one factor, or by one along each axis, away from a point that stays.
+
+        Parameters
+        ----------
+        factors
+            A number, or (3,) of them.
+        origin
+            (3,) the point that stays.
+
+        Raises
+        ------
+        InvalidDeformer
+            Numbers that are not finite, or another number of them.
+        """
         uniform = np.ndim(factors) == 0
         along = np.repeat(_array("factors", factors, ()), 3) if uniform else _array("factors", factors, (3,))
         return cls._about(np.diag(along), origin)

@@ -147,6 +147,11 @@ class BezierFFD(ControlLattice):
         ----------
         moves
             Displacement (3,) to add, by control point index (i, j, k).
+
+        Raises
+        ------
+        InvalidDeformer
+            One hyperpatch, which has no joints, or a control point that the lattice has not.
         """
         if self.patches is None:
             raise InvalidDeformer("one hyperpatch has no joints: use moved")
@@ -162,6 +167,11 @@ class BezierFFD(ControlLattice):
         """(l + 1, m + 1, n + 1) the control points that may move while the rim joins unmoved space with C^k.
 
         The ``continuity + 1`` outer layers are frozen (Sederberg & Parry 1986, sec. 3.4).
+
+        Parameters
+        ----------
+        continuity
+            k: 0 keeps the joint closed, 1 its tangents too.
         """
         mask = np.ones(self.shape, bool)
         for axis in range(3):

@@ -146,7 +146,18 @@ class BezierPatchFFD(ControlLattice):
         return np.asarray(np.linalg.inv(np.column_stack([self.edges, self.normal])))
 
     def parameters(self, points: Points) -> tuple[NDArray[np.int64], Floats]:
-        """The points that the patch moves, and their (k, 3) parameters s, t and height."""
+        """The points that the patch moves, and their (k, 3) parameters s, t and height.
+
+        Parameters
+        ----------
+        points
+            (n, 3) points of space.
+
+        Raises
+        ------
+        OutsideDomain
+            Some lie beside the patch, and ``outside`` is ``"error"``.
+        """
         parameters = (points - self.origin) @ self.inverse_frame.T
         if self.outside == "extend":
             return np.arange(len(points)), parameters

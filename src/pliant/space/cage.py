@@ -115,7 +115,17 @@ class Cage(SpaceDeformer):
         return self.bound(points, *self._tables(points))
 
     def bound(self, points: Points, vertices: WeightTable, faces: WeightTable | None) -> CageBinding | GreenBinding:
-        """A binding from weights that are there already."""
+        """A binding from weights that are there already.
+
+        Parameters
+        ----------
+        points
+            (n, 3) the target's.
+        vertices
+            (n, v) weights of the cage's vertices.
+        faces
+            (n, t) weights of the stretched normals of its triangles; None = the coordinates have none.
+        """
         if faces is None:
             return CageBinding(points, vertices, self.rest, self.controls)
         prolongation = self._scheme.prolongation

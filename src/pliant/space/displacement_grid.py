@@ -126,6 +126,13 @@ class DisplacementGrid(ControlLattice):
         """(n,) whether the map is differentiable at (n, 3) points and ``distance`` around them.
 
         It is not on the planes through the nodes of a linear grid, nor at the rim.
+
+        Parameters
+        ----------
+        points
+            (n, 3) where.
+        distance
+            A length: how far around them too.
         """
         q = (as_points(points) - self.origin) @ self.axes / self.spacing
         last, room = np.array(self.shape) - 1.0, distance / self.spacing

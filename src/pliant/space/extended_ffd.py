@@ -184,7 +184,18 @@ class ExtendedFFD(SpaceDeformer):
         return replace(self, displacements=checked_controls(controls, self.points.shape) - self.points)
 
     def with_rest(self, points: ArrayLike) -> Self:
-        """The same lattice with its (m, 3) control points at rest elsewhere, and not displaced."""
+        """The same lattice with its (m, 3) control points at rest elsewhere, and not displaced.
+
+        Parameters
+        ----------
+        points
+            (m, 3) where they rest.
+
+        Raises
+        ------
+        InvalidControls
+            Another shape, or numbers that are not finite.
+        """
         rest = checked_controls(points, self.points.shape)
         return replace(self, points=rest, displacements=None, frames=None)
 
@@ -195,6 +206,11 @@ class ExtendedFFD(SpaceDeformer):
         ----------
         moves
             Displacement (3,) to add, by control point.
+
+        Raises
+        ------
+        InvalidDeformer
+            A control point that the lattice has not.
         """
         wrong = [index for index in moves if not 0 <= index < len(self.points)]
         if wrong:

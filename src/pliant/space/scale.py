@@ -67,7 +67,15 @@ class Scale(SpaceDeformer):
 
     @classmethod
     def around(cls, target: PolygonMesh | ArrayLike, **fields: Any) -> Self:
-        """Laid around a shape: the middle of its bounding box stays, if no origin is among ``fields``."""
+        """Laid around a shape: the middle of its bounding box stays, if no origin is among ``fields``.
+
+        Parameters
+        ----------
+        target
+            A mesh or (n, 3) points.
+        fields
+            Those of the deformer.
+        """
         low, high = extent_along(target, np.eye(3))
         return cls(**{"origin": (low + high) / 2, **fields})
 

@@ -55,7 +55,13 @@ class ContourSkeleton:
         return padded[self.groups]
 
     def following(self, displacements: ArrayLike) -> Points:
-        """(g, 3) the skeleton's points when each goes along with its group: by the mean of its (n, 3) displacements."""
+        """(g, 3) the skeleton's points when each goes along with its group: by the mean of its (n, 3) displacements.
+
+        Parameters
+        ----------
+        displacements
+            (n, 3) of the mesh's vertices.
+        """
         moved, used = np.asarray(displacements, np.float64), self.groups >= 0
         groups, size = self.groups[used], len(self.points)
         count = np.maximum(np.bincount(groups, minlength=size), 1)

@@ -98,7 +98,18 @@ class DeformationTransfer:
         self._factor = Cholesky(csc_array(stiffness + diags_array(pin)))
 
     def points(self, pose: PolygonMesh | ArrayLike) -> Points:
-        """(n, 3) the target's points in a pose of the source, as :meth:`__call__`."""
+        """(n, 3) the target's points in a pose of the source, as :meth:`__call__`.
+
+        Parameters
+        ----------
+        pose
+            The source with its vertices elsewhere, or (m, 3) their positions.
+
+        Raises
+        ------
+        InvalidTarget
+            Another number of points than the source's.
+        """
         posed = as_points(pose, borrow=True)
         if posed.shape != self.source.points.shape:
             raise InvalidTarget(
