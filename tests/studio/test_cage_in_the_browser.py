@@ -1,5 +1,6 @@
 """Cages by hand in a real browser, against what the library computes."""
 
+import time
 from dataclasses import replace
 
 import numpy as np
@@ -65,6 +66,54 @@ def test_a_cage_is_built_verified_dragged_by_a_face_and_its_coordinates_are_comp
     np.testing.assert_allclose(
         page.positions(len(mesh.points)), green(mesh.points), atol=4e-6 * page.session.scene.mesh.diagonal
     )
+
+
+def test_other_coordinates_stand_beside_and_follow_the_drag(launched, view):
+    mesh = egg(24, 14)
+    cage = pl.Cage(pl.cage_from_box(mesh, (1, 1, 1)))
+    page = view(launched(pl.Scene(mesh, pl.Stack([pl.Layer("Cage", cage)]))))
+    entered(page, "0.4, -1, 0.5")
+    page.until("document.querySelectorAll('.cage-report .good').length === 3")
+    page.page.get_by_label("Side by side").select_option("green")
+    page.until("document.querySelectorAll('.viewport.side').length === 1")
+    page.page.get_by_label("And beside").select_option("harmonic")
+    page.until("document.querySelectorAll('.viewport.side').length === 2")
+    titles = page.ask("[...document.querySelectorAll('.side-title')].map((each) => each.textContent).sort()")
+    assert titles == ["Green", "Harmonic", "Mean value"]
+    page.settled()
+    top = int(np.argmax(cage.rest @ [1, -1, 1]))
+    page.page.get_by_label("A click takes").select_option("point")
+    page.settled()
+    page.drag(corner(page, top), (20, -40), steps=6, release=False)
+    page.until("window.pliantStudio.latencies.length > 0")
+
+    def drawn(kind):
+        whole = (
+            f"Array.from({{length: {len(mesh.points)}}}, (_, i) => window.pliantStudio.probes.cage.beside('{kind}', i))"
+        )
+        return np.array(page.ask(whole))
+
+    def follows(moved):
+        wanted = {kind: replace(moved, coordinates=kind)(mesh.points) for kind in ("green", "harmonic")}
+        end = time.monotonic() + 15
+        while max(np.abs(drawn(kind) - points).max() for kind, points in wanted.items()) > 1e-5 * mesh.diagonal:
+            assert time.monotonic() < end, "the views beside do not follow"
+            time.sleep(0.05)
+
+    def held():
+        found = page.session.submit(lambda: page.session.dragging.stack["Cage"].deformer).result()
+        return cage.moved(found.controls)
+
+    page.settled()
+    assert np.linalg.norm(held().controls - cage.rest) > 0.1
+    follows(held())  # live, while the pointer holds on
+    page.picture("cage-beside")
+    page.page.mouse.up()
+    page.committed(page.session.revision - 1)
+    page.page.get_by_label("And beside").select_option("")
+    page.until("document.querySelectorAll('.viewport.side').length === 1")
+    page.ask("window.pliantStudio.mode('look')")
+    page.until("document.querySelectorAll('.viewport.side, .side-title').length === 0")
 
 
 def test_planes_are_drawn_across_a_bar_and_its_edges_are_dragged(launched, view):
