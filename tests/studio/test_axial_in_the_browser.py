@@ -11,6 +11,7 @@ from pliant.studio.examples.samples import bar
 
 
 def at(page, name):
+    page.until("!window.pliantStudio.probes.axial.adding()")
     page.until(f"window.pliantStudio.probes.axial.screen('{name}') !== null")
     page.settled()
     place = page.ask(f"window.pliantStudio.probes.axial.screen('{name}')")
@@ -43,8 +44,10 @@ def test_a_twist_is_added_turned_and_bent_by_its_handles(launched, view):
     same_points(page)
     page.page.get_by_role("button", name="Bend", exact=True).click()
     page.committed(revision + 3)
+    the_handles_are_on_the_canvas(page)
     page.page.get_by_role("radio", name="y", exact=True).click()
     page.committed(revision + 4)
+    page.ask("window.pliantStudio.look(0.5, -1, 0.5)")  # the page has stepped back, to show the handles of the bend
     start = at(page, "angle")
     page.drag(start, (40, -110), steps=8)
     page.committed(revision + 5)
@@ -57,6 +60,16 @@ def test_a_twist_is_added_turned_and_bent_by_its_handles(launched, view):
     page.page.get_by_role("button", name="Mute", exact=True).first.click()
     page.committed(revision + 6)
     np.testing.assert_allclose(page.positions(40), twist(page.session.scene.mesh.points[:40]), atol=1e-5)
+
+
+def the_handles_are_on_the_canvas(page):
+    """Clear of its edges, and of the bar above it."""
+    box = page.page.locator(".viewport canvas").first.bounding_box()
+    page.until("!window.pliantStudio.probes.axial.adding()")
+    for name in page.ask("window.pliantStudio.probes.axial.names()"):
+        x, y = at(page, name)
+        assert box["x"] < x < box["x"] + box["width"]
+        assert box["y"] + 50 < y < box["y"] + box["height"]
 
 
 def test_control_snaps_a_twist_to_fifteen_degrees_and_escape_gives_it_back(launched, view):

@@ -75,6 +75,38 @@ def test_a_clip_is_downloaded_and_what_is_lost_is_shown(launched, view, tmp_path
     page.picture("motion-export")
 
 
+@pytest.mark.filterwarnings(
+    "ignore::pytest.PytestUnraisableExceptionWarning"
+)  # the encoder's library leaves pipes open
+def test_a_film_and_a_moving_glb_are_downloaded_and_show_the_clip(launched, view, tmp_path):
+    import imageio.v3 as imageio
+
+    page = opened(launched, view, fps=1.0)
+    page.page.locator(".transport").get_by_role("button", name="Export").click()
+    page.page.get_by_label("Format").select_option(".glb")
+    clip = moving_scene(fps=1.0).clip
+    motion = pl.read_sequence(downloaded(page, tmp_path), mesh=clip.mesh, fps=1)
+    expected = np.stack([frame.points for frame in clip.frames()])
+    np.testing.assert_allclose(np.asarray(motion.points), expected, atol=1e-5)
+    page.page.get_by_label("Format").select_option(".mp4")
+    page.page.get_by_label("Size").select_option("640 × 360")
+    frames = np.asarray(imageio.imread(downloaded(page, tmp_path), index=...))
+    assert frames.shape == (len(expected), 360, 640, 3)
+    grey = frames.astype(float).mean(axis=-1)
+    assert np.ptp(grey[0]) > 60  # a shape on a ground
+    assert np.abs(grey[0] - grey[-1]).max() > 40  # that moves
+
+
+def downloaded(page, folder):
+    """The file that comes of a click, kept."""
+    with page.page.expect_download(timeout=120_000) as waiting:
+        page.page.get_by_role("button", name="Download").click()
+    path = folder / waiting.value.suggested_filename
+    waiting.value.save_as(path)
+    page.until("document.querySelector('.report h3') !== null")
+    return path
+
+
 def test_a_guide_comes_once_can_be_skipped_and_starts_anew_from_the_help_sheet(launched, view):
     page = view(launched(moving_scene()), locale="en-GB")  # somebody who is new here
     page.page.goto(f"{page.studio.url}&antialias=off")

@@ -18,18 +18,23 @@ const KINDS: readonly (readonly [string, IconName])[] = [
   ["scale", "scale"],
 ];
 
-export function axialToolbar(studio: Studio, snap: boolean, onSnap: (on: boolean) => void): HTMLElement {
-  const add = async (kind: string): Promise<void> => {
-    const answer = await studio.ask("layers.add", { kind, fields: kind === "sine" ? { normal: "x" } : {} });
-    if (answer) studio.activeLayer.set(answer.head["layer"] as string);
-  };
+/** Lay a deformer around the shape; its layer, if there is one. */
+export async function addAxial(studio: Studio, kind: string): Promise<string | null> {
+  const answer = await studio.ask("layers.add", { kind, fields: kind === "sine" ? { normal: "x" } : {} });
+  if (!answer) return null;
+  const layer = answer.head["layer"] as string;
+  studio.activeLayer.set(layer);
+  return layer;
+}
+
+export function axialToolbar(snap: boolean, onSnap: (on: boolean) => void, add: (kind: string) => void): HTMLElement {
   const magnet = toggle("magnet", `${t("snap")} (N)`, snap, onSnap);
   magnet.classList.add("axial-snap");
   return h(
     "div",
     { class: "toolbar", role: "toolbar" },
     h("span", { class: "toolbar-label" }, t("add")),
-    ...KINDS.map(([kind, icon]) => iconButton(icon, tWord("kind_", kind), () => void add(kind))),
+    ...KINDS.map(([kind, icon]) => iconButton(icon, tWord("kind_", kind), () => add(kind))),
     separator(),
     magnet,
   );

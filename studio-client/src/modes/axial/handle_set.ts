@@ -1,6 +1,6 @@
 // The handles of a layer as the client knows them: names, units, places and what they say. What they mean, the server knows.
 
-import { Vector3 } from "three";
+import { Box3, Vector3 } from "three";
 import { shortNumber } from "../../panels/controls";
 import type { Frame, Numbers } from "../../transport/frame";
 
@@ -34,6 +34,10 @@ export class HandleSet {
 
   at(index: number): Vector3 {
     return new Vector3().fromArray(this.positions, 3 * index);
+  }
+
+  get box(): Box3 {
+    return new Box3().setFromArray(this.positions);
   }
 
   index(name: string): number {

@@ -1,6 +1,6 @@
 // Barr and friends by hand: handles for the axis, its bounds and the numbers of a deformer, on the canvas.
 
-import { Vector3 } from "three";
+import { Vector3, type Box3 } from "three";
 import { tWord } from "../../core/strings";
 import type { Studio } from "../../studio";
 import { Latest } from "../../transport/latest";
@@ -11,10 +11,13 @@ import { Tags } from "../../view/tags";
 import { LayerDrag } from "../layer_drag";
 import { AXIAL_KEYS } from "../key_lists";
 import { registerMode, type Mode, type Pointer } from "../mode";
-import { axialToolbar } from "./adding";
+import { addAxial, axialToolbar } from "./adding";
 import { HandleSet, type Role } from "./handle_set";
 import { axialPanel } from "./panel";
 import { axialTour } from "./tour";
+
+const EDGE = 12; // pixels of the canvas that handles keep clear of
+const BAR = 58; // and above, where the tools are
 
 const SIZES: Record<Role, number> = { number: 1.3, bound: 0.95, origin: 1.1, direction: 1 };
 
@@ -28,6 +31,7 @@ class AxialMode implements Mode {
   readonly probe = {
     names: () => this.set?.facts.map((each) => each.name) ?? [],
     screen: (name: string) => this.screen(name),
+    adding: () => this.adding > 0,
     value: (name: string) => this.set?.values[this.set.index(name)] ?? null,
   };
   private set: HandleSet | null = null;
@@ -39,6 +43,7 @@ class AxialMode implements Mode {
   private offset = { x: 0, y: 0 };
   private hovered: number | null = null;
   private snap = false;
+  private adding = 0; // layers that are being added
   private stops: (() => void)[] = [];
   private readonly latest = new Latest<null>(() => this.load());
 
@@ -71,7 +76,11 @@ class AxialMode implements Mode {
   }
 
   toolbar(): HTMLElement {
-    return axialToolbar(this.studio, this.snap, (snap) => (this.snap = snap));
+    return axialToolbar(
+      this.snap,
+      (snap) => (this.snap = snap),
+      (kind) => void this.add(kind),
+    );
   }
 
   panel(): { title: "modeAxial"; body: HTMLElement } {
@@ -79,6 +88,11 @@ class AxialMode implements Mode {
   }
 
   tour = axialTour;
+
+  /** The shape and the handles around it. */
+  selectionBox(): Box3 | null {
+    return this.set && this.set.box.union(this.studio.mesh.box);
+  }
 
   down(pointer: Pointer): boolean {
     const { set, handles } = this;
@@ -158,6 +172,28 @@ class AxialMode implements Mode {
     if (answer) this.showLines(answer.arrays);
     else this.ghost?.hide();
     this.look();
+  }
+
+  private async add(kind: string): Promise<void> {
+    this.adding++;
+    const layer = await addAxial(this.studio, kind);
+    this.latest.push(null);
+    await this.latest.idle();
+    if (this.set && this.set.layer === layer) this.reveal(this.set);
+    this.adding--;
+  }
+
+  /** Step back where handles lie outside of the canvas, or behind the bar above it. */
+  private reveal(set: HandleSet): void {
+    const { viewport } = this.studio;
+    const { width, height } = viewport.size;
+    const hidden = set.facts.some((_, index) => {
+      const { x, y } = viewport.project(set.at(index));
+      return x < EDGE || y < BAR || x > width - EDGE || y > height - EDGE;
+    });
+    const box = this.selectionBox()!;
+    const room = 0.07 * box.getSize(new Vector3()).length();
+    if (hidden) this.studio.frame(box.expandByScalar(room));
   }
 
   private follow(arrays: Record<string, Numbers>): void {
