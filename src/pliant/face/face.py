@@ -50,7 +50,13 @@ class Face:
     score: float
 
     def with_mesh(self, mesh: PolygonMesh) -> Self:
-        """The same face with another mesh."""
+        """The same face with another mesh.
+
+        Parameters
+        ----------
+        mesh
+            With the texture coordinates of the picture.
+        """
         return replace(self, mesh=mesh)
 
     def filled(self) -> Self:
@@ -75,6 +81,18 @@ class Face:
 
         Each file appears whole or not at all. What a format does not hold is returned, or refused where ``strict``,
         as by :func:`pliant.write`.
+
+        Parameters
+        ----------
+        path
+            Ends in ``.obj`` or ``.glb``.
+        strict
+            Refuse to write what would lose something.
+
+        Returns
+        -------
+        LossReport
+            What the format does not hold.
         """
         path = Path(path)
         with TemporaryDirectory() as folder:

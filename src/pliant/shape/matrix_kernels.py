@@ -61,6 +61,13 @@ class DiagonalKernel(Kernel):
 class DirectedKernel(Kernel):
     """k(x, y) A with a scalar kernel and one symmetric positive semi-definite (3, 3) matrix A.
 
+    Parameters
+    ----------
+    kernel
+        k, a scalar one.
+    matrix
+        A, (3, 3): which directions there are, and how much of each.
+
     Raises
     ------
     InvalidParameter

@@ -27,7 +27,7 @@ class Bend(AxialDeformer):
     """Bend about an axis: lines along ``normal x axis`` become arcs between the bounds and stay straight beyond.
 
     With k = angle / (high - low), q = 1 - k z inside the bounds and 1 outside, z along the normal: det J = q. Where
-    k z >= 1 the map folds; it still works, with a warning.
+    k z >= 1 the map folds; it still works, with a warning (Barr 1984, section 3.4).
 
     Parameters
     ----------

@@ -27,7 +27,7 @@ CHUNK = 8192
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class BezierPatchFFD(ControlLattice):
-    """Free-form deformation of a plane into a Bézier surface of any degree.
+    """Free-form deformation of a plane into a Bézier surface of any degree (Coquillart 1990).
 
     A point X = origin + s S + t T + h N, with N the plane's unit normal, moves to P(s, t) + h n(s, t): P is the
     surface, n its unit normal. Points off the plane thus keep their distance from it, along the normal. Where the

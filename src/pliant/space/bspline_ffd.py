@@ -35,7 +35,7 @@ _LAYERS = {"clamp": 2, "zero": 3, "identity": 0}  # values beyond the lattice on
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class BSplineFFD(ControlLattice):
-    """Free-form deformation by a uniform cubic B-spline lattice.
+    """Free-form deformation by a uniform cubic B-spline lattice (Lee, Wolberg & Shin 1997, eq. 1).
 
     Parameters
     ----------

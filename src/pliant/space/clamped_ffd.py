@@ -30,7 +30,8 @@ Floats = NDArray[np.float64]
 class ClampedFFD(ControlLattice):
     """Free-form deformation of a parallelepiped by clamped uniform B-splines of order min(4, n) along each axis.
 
-    With up to four control points an axis it is a Bernstein lattice. Points outside the box stay.
+    With up to four control points an axis it is a Bernstein lattice. Points outside the box stay (Kenway, Kennedy &
+    Martins 2010).
 
     Parameters
     ----------

@@ -44,7 +44,7 @@ class ExtendedBinding(SparseBinding):
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class ExtendedFFD(SpaceDeformer):
-    """Free-form deformation by a composite lattice of tricubic patches.
+    """Free-form deformation by a composite lattice of tricubic patches (Coquillart 1990).
 
     Parameters
     ----------

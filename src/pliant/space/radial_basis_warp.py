@@ -17,7 +17,7 @@ Floats = NDArray[np.float64]
 
 @dataclass(frozen=True, eq=False)
 class RadialBasisWarp(LandmarkWarp):
-    """A warp that ends at a distance: Wendland's C² function around each landmark.
+    """A warp that ends at a distance: Wendland's C² function (1995) around each landmark.
 
     Parameters
     ----------

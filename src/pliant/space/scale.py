@@ -33,7 +33,7 @@ Floats = NDArray[np.float64]
 class Scale(SpaceDeformer):
     """Scale space by a factor along each of three axes, away from a point that stays.
 
-    Normals n become (nx / x, ny / y, nz / z) times det J = x y z.
+    Normals n become (nx / x, ny / y, nz / z) times det J = x y z (Barr 1984, section 3.1).
 
     Parameters
     ----------

@@ -26,7 +26,7 @@ _ALONG = np.array([0.0, 0.0, 1.0])  # the axis in its own frame
 
 @dataclass(frozen=True, eq=False, kw_only=True)
 class TangentFrames(AxialDeformer):
-    """Bend, twist and stretch the axis segment by segment; sections follow it rigidly.
+    """Bend, twist and stretch the axis segment by segment; sections follow it rigidly (Barr 1984, eq. 5.1).
 
     Beyond the low bound nothing moves, beyond the high one space goes on straight. det J is the stretch times one
     minus the curvature times the distance from the axis.

@@ -22,7 +22,8 @@ Floats = NDArray[np.float64]
 class Taper(ProfiledDeformer, SimilarDeformer):
     """Scale each section by r = 1 + (factor - 1) h(t), h being the profile.
 
-    Normals n become (r nx, r ny, r^2 nz - r r' (x nx + y ny)) for an axis z; det J = r^2.
+    Normals n become (r nx, r ny, r^2 nz - r r' (x nx + y ny)) for an axis z; det J = r^2
+    (Barr 1984, section 3.2).
 
     Parameters
     ----------

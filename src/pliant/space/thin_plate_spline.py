@@ -20,8 +20,8 @@ FLAT = 1e-9  # extent of the landmarks, relative to the largest, below which the
 class ThinPlateSpline(LandmarkWarp):
     """The smoothest warp through landmarks: of all that carry them to their targets it bends space least.
 
-    Where the landmarks move affinely, all space does. Landmarks in a plane, or on a line, say nothing of the other
-    directions: there the affine part keeps things as they are.
+    It is Bookstein's (1989) in space. Where the landmarks move affinely, all space does. Landmarks in a plane, or on a
+    line, say nothing of the other directions: there the affine part keeps things as they are.
 
     Parameters
     ----------

@@ -22,7 +22,8 @@ Floats = NDArray[np.float64]
 class Twist(ProfiledDeformer, SimilarDeformer):
     """Turn each section about the axis by angle h(t), h being the profile.
 
-    Normals n become (c nx - s ny, s nx + c ny, f' (y nx - x ny) + nz) for an axis z and f = angle h; det J = 1.
+    Normals n become (c nx - s ny, s nx + c ny, f' (y nx - x ny) + nz) for an axis z and f = angle h; det J = 1
+    (Barr 1984, section 3.3).
 
     Parameters
     ----------
