@@ -166,6 +166,20 @@ def cages(browser) -> None:
         save(page, "studio-cage", (840, 525))
 
 
+def coordinates(browser) -> None:
+    """The same cage in the same pose under three kinds of coordinates."""
+    with shown(browser, caged_vase(), "vase", "cage") as page:
+        wait(page, "document.querySelectorAll('.cage-report .good').length === 3")
+        page.get_by_label("Side by side").select_option("green")
+        page.get_by_label("And beside").select_option("harmonic")
+        wait(page, "document.querySelectorAll('.viewport.side').length === 2")
+        time.sleep(3)
+        page.evaluate("window.pliantStudio.look(-0.35, -1, 0.3)")
+        page.mouse.move(60, 600)
+        time.sleep(1)
+        save(page, "studio-cage-beside", (840, 525))
+
+
 def surfaces(browser) -> None:
     """A raised arm beside its skeleton, its handle held by the gizmo."""
     with shown(browser, raised_arm(), "arm", "surface") as page:
@@ -271,6 +285,7 @@ PICTURES = {
     "sites": sites,
     "rounds": rounds,
     "cages": cages,
+    "coordinates": coordinates,
     "surfaces": surfaces,
     "transfers": transfers,
     "times": times,

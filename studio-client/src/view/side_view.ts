@@ -74,7 +74,7 @@ export class SideView {
     if (stage === this.stage) return;
     this.detach();
     this.stage = stage;
-    stage.append(this.viewport.element);
+    this.studio.viewport.element.after(this.viewport.element); // under what floats over both
     stage.classList.add("split", `split-${this.place}`);
   }
 
