@@ -53,6 +53,18 @@ def test_every_number_of_the_table_is_found_where_its_handle_is_put(kind):
         assert np.linalg.norm(ray.miss(row.place(found)[0])) < 1e-4 * start.size, row.name
 
 
+@pytest.mark.parametrize("profile", ["ramp", "smooth", "constant", "bump", (1.0, 0.2)])
+@pytest.mark.parametrize("kind", [pl.Twist, pl.Taper, pl.Sine, pl.Wave], ids=lambda kind: kind.__name__)
+def test_a_number_is_held_where_the_profile_lets_it_act(kind, profile):
+    start = tool_of(kind, profile=profile)
+    row = TABLE[kind][0]
+    wanted = row.write(start, np.array([NUMBERS[row.name]]))
+    ray = towards(row.place(wanted)[0])
+    assert np.linalg.norm(ray.miss(row.place(start)[0])) > 0.02 * start.size
+    found = followed(start, row, ray)
+    np.testing.assert_allclose(row.read(found), row.read(wanted), rtol=1e-3)
+
+
 @pytest.mark.parametrize("kind", [kind for kind in TABLE if kind is not pl.Scale], ids=lambda kind: kind.__name__)
 def test_bounds_follow_the_pointer(kind):
     start = tool_of(kind)

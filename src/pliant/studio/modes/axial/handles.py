@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from pliant.mesh import Points
 from pliant.space.bend import Bend
 from pliant.space.flare import Flare
+from pliant.space.profile import as_profile
 from pliant.space.scale import Scale
 from pliant.space.sine import Sine
 from pliant.space.squash import Squash
@@ -29,6 +30,9 @@ from pliant.studio.modes.axial.tool import Tool
 Floats = NDArray[np.float64]
 Unit = Literal["radians", "factor", "length", "place", "direction"]
 Place = Callable[[Tool], Points]
+
+_ALONG = np.linspace(0.0, 1.0, 65)  # where profiles are looked at
+_WAVES = 64  # that are looked at
 
 
 @dataclass(frozen=True)
@@ -83,11 +87,28 @@ def carried(u: float, v: float, t: float) -> Place:
     return lambda tool: tool.carried(tool.at(u, v, tool.between(t))[None])
 
 
+def rim(tool: Tool) -> Points:
+    """The rim where the deformer acts most, at the high bound where it does there."""
+    return tool.carried(tool.at(1.0, 0.0, tool.between(strongest(tool.deformer, _ALONG[::-1])))[None])
+
+
 def crest(tool: Tool) -> Points:
-    """The top of a sine's first wave."""
-    deformer = tool.deformer
-    t = (np.pi / 2 + deformer.phase) / (2 * np.pi * deformer.waves or 1.0)
-    return tool.carried(tool.at(0.0, 0.0, tool.between(np.clip(t, 0.0, 1.0)))[None])
+    """The top or bottom of a sine's first wave, or of the highest."""
+    t = strongest(tool.deformer, _waves(tool.deformer, np.pi / 2))
+    return tool.carried(tool.at(0.0, 0.0, tool.between(t))[None])
+
+
+def strongest(deformer: Any, places: Floats) -> float:
+    """The first of (k,) places, 0 to 1 between the bounds, at which a deformer's profile is as strong as at any."""
+    strength = np.abs(np.broadcast_to(as_profile(deformer.profile).value(places), places.shape))
+    return float(places[np.argmax(strength >= (1 - 1e-9) * strength.max())])
+
+
+def _waves(deformer: Any, top: float) -> Floats:
+    """(k,) tops and bottoms of waves between the bounds, a top being at an angle; the nearest, where there is none."""
+    turns = (top + deformer.phase + np.pi * np.arange(-_WAVES, _WAVES)) / (2 * np.pi * deformer.waves or 1.0)
+    inside = np.sort(turns[(turns >= 0) & (turns <= 1)])
+    return inside if len(inside) else np.clip(turns[[np.abs(turns - 0.5).argmin()]], 0.0, 1.0)
 
 
 def wave_end(tool: Tool) -> Points:
@@ -132,8 +153,8 @@ def _reach(tool: Tool) -> Floats:
 
 
 TABLE: dict[type, tuple[Handle, ...]] = {
-    Twist: (number("angle", carried(1, 0, 1), "radians"),),
-    Taper: (number("factor", carried(1, 0, 1)),),
+    Twist: (number("angle", rim, "radians"),),
+    Taper: (number("factor", rim),),
     Flare: (
         number("start", carried(1, 0, 0)),
         number("end", carried(1, 0, 1)),
@@ -143,7 +164,7 @@ TABLE: dict[type, tuple[Handle, ...]] = {
     Bend: (number("angle", carried(0, 0, 1), "radians"), number("center", _center, "length")),
     Sine: (number("amplitude", crest, "length"), number("waves", wave_end)),
     Wave: (
-        number("amplitude", ripple(lambda deformer: deformer.phase / (2 * np.pi * deformer.waves or 1.0)), "length"),
+        number("amplitude", ripple(lambda deformer: strongest(deformer, _waves(deformer, 0.0))), "length"),
         number("waves", ripple(lambda deformer: 1.0 / (deformer.waves or 1.0))),
     ),
     Scale: (number("x", stretched(0)), number("y", stretched(1)), number("z", stretched(2))),
