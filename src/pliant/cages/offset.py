@@ -12,6 +12,7 @@ Triangles = NDArray[np.int64]
 
 _FINE = 0.6  # grid cells in an offset
 _MOST = 3_000_000  # grid points
+_AT_ONCE = 1 << 13  # of them are asked for: meanwhile libigl keeps the interpreter from all other threads
 
 
 def offset_surface(mesh: PolygonMesh, offset: float) -> tuple[Points, Triangles]:
@@ -42,9 +43,13 @@ def offset_surface(mesh: PolygonMesh, offset: float) -> tuple[Points, Triangles]
 def _signed_distance(mesh: PolygonMesh, grid: Points) -> NDArray[np.float64]:
     igl = import_igl()
     points, triangles = np.ascontiguousarray(mesh.points), np.ascontiguousarray(mesh.triangles, np.int64)
-    square = igl.point_mesh_squared_distance(grid, points, triangles)[0]
-    winding = igl.fast_winding_number(points, triangles, grid)
-    return np.asarray(np.where(np.abs(winding) > 0.5, -1.0, 1.0) * np.sqrt(square))
+    distances, size = np.empty(len(grid)), max(_AT_ONCE, len(triangles))  # each slice builds its trees anew
+    for start in range(0, len(grid), size):
+        some = grid[start : start + size]
+        square = igl.point_mesh_squared_distance(some, points, triangles)[0]
+        winding = igl.fast_winding_number(points, triangles, some)
+        distances[start : start + size] = np.where(np.abs(winding) > 0.5, -1.0, 1.0) * np.sqrt(square)
+    return distances
 
 
 def _filled(values: NDArray[np.float64], offset: float) -> NDArray[np.float64]:
