@@ -8,6 +8,7 @@ from OCP.BRepPrimAPI import BRepPrimAPI_MakeCylinder
 
 import pliant as pl
 from pliant import cad
+from pliant.cad.labels import Label
 
 
 @pytest.fixture
@@ -36,6 +37,15 @@ def test_a_recipe_deforms_a_part_into_triangles(run, rod, tmp_path):
 def test_what_a_part_holds(run, rod):
     told = orjson.loads(run("info", rod, "--json").stdout)
     assert (told["kind"], told["solids"], told["faces"], told["valid"]) == ("part", 1, 3, True)
+
+
+def test_names_and_colours_come_along(run, tmp_path):
+    red = Label("solid", 0, "rod", "", (1.0, 0.0, 0.0, 1.0))
+    cad.write(cad.Part(BRepPrimAPI_MakeCylinder(5.0, 40.0).Shape(), (red,)), tmp_path / "red.step")
+    done = run("apply", "twist-up", tmp_path / "red.step", "-o", tmp_path / "out.step", "--tolerance", "0.05", "--json")
+    assert orjson.loads(done.stdout)["losses"] == []
+    assert cad.read(tmp_path / "out.step").labels == (red,)
+    assert orjson.loads(run("info", tmp_path / "out.step", "--json").stdout)["names"] == ["rod"]
 
 
 def test_a_file_that_is_no_part(run, tmp_path):

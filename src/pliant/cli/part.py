@@ -46,14 +46,15 @@ def deform_part(
     session.say(f"read {path}: {part}")
     with session.patience():
         moved = part.deformed(chosen(part.mesh()), tolerance=tolerance)
+    losses: tuple[str, ...] = ()
     if is_part(output):
-        report = write(moved, output, strict=strict)
-        for loss in report.losses:
+        losses = write(moved, output, strict=strict).losses
+        for loss in losses:
             session.warn(f"{output} does not hold: {loss}")
         session.say(f"wrote {output}: {moved}")
     else:
-        write_mesh(session, moved.mesh(), output, strict=strict)
-    session.result(input=path, output=output, volume=moved.volume, gap=moved.gap, valid=moved.valid)
+        losses = write_mesh(session, moved.mesh(), output, strict=strict).losses
+    session.result(input=path, output=output, volume=moved.volume, gap=moved.gap, valid=moved.valid, losses=losses)
 
 
 def facts_of_part(part: Part) -> dict[str, Any]:
@@ -71,4 +72,6 @@ def facts_of_part(part: Part) -> dict[str, Any]:
         "smooth_edges": int((part.kinks < 1e-3).sum()),
         "gap": part.gap,
         "valid": part.valid,
+        "names": [label.name for label in part.labels if label.name],
+        "unkept": list(part.unkept),
     }
