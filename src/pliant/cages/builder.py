@@ -20,7 +20,7 @@ from pliant.numerics.meshes.triangle_crossings import self_crossings
 
 _FIRST = 4  # vertices between the rings of a region that is linked along the surface, at first
 _MORE = 6  # that many each time where it fails, and there
-_ATTEMPTS = 6
+_ATTEMPTS = 8
 _PATIENCE = 2  # attempts for which rings and links may cut one another before the margin is made smaller
 _SHARES = (1.0, 0.5, 0.25)  # of the margin, tried in turn: limbs may be near to one another
 
@@ -136,12 +136,13 @@ class CageBuilder:
         ------
         NotConverged
             No number of vertices that was tried gives a cage that encloses the mesh and does not cut itself: with the
-            cuts around the regions where it fails.
+            cuts around the regions where it fails, and a place.
         """
         parts, clearance = self._parted(), 0.1 * self.margin * self.mesh.diagonal
         regions = parts.of_vertices(len(self.mesh.points))
         for tried, share in enumerate(_SHARES):
             linking, places, near = self._linking(parts, share), dict[int, int](), dict[int, Points]()
+            apart = False  # whether rings and links have been apart from one another
             for attempt in range(_ATTEMPTS):
                 progress((tried + attempt / _ATTEMPTS) / len(_SHARES))
                 linked, owners = linking.linked(places, near)
@@ -151,9 +152,10 @@ class CageBuilder:
                     triangles = np.unique(crossed)
                     wrong = rough.points[rough.triangles[triangles]].mean(axis=1)
                     at = owners[rough.triangle_faces[triangles]]
-                    if attempt >= _PATIENCE and share != _SHARES[-1]:
+                    if attempt >= _PATIENCE and not apart and share != _SHARES[-1]:
                         break  # limbs are too near to one another for this margin
                 else:
+                    apart = True
                     points, wrong, at = Enclosing(rough, owners, self.mesh, regions, share * clearance).solve()
                 if not len(wrong):
                     return relaxed(rough.with_points(points), self.mesh, rounds, clearance)
@@ -161,11 +163,11 @@ class CageBuilder:
                     if region in places:
                         near[region] = np.concatenate([near.get(region, wrong[:0]), spread(wrong[at == region], _MORE)])
                     places[region] = places.get(region, 0) + _FIRST
-        failing = linking.named(np.unique(at).tolist())
+        failing, (x, y, z) = linking.named(np.unique(at).tolist()), np.median(wrong, axis=0)
         raise NotConverged(
             f"the {len(self.cuts)} cuts give no cage that encloses the mesh without cutting itself: it fails at "
-            f"{failing}. Add cuts where the shape bends, widens or branches, keep cuts of neighbouring "
-            "limbs apart, or take a smaller margin"
+            f"{failing}, most of all near ({x:.4g}, {y:.4g}, {z:.4g}). Add cuts there or where the shape bends or "
+            "widens, keep cuts of neighbouring limbs apart, or take a smaller margin"
         )
 
     def _parted(self) -> Parts:

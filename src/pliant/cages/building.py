@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pliant.cages.checking import check_cage
-from pliant.cages.extras import import_igl
+from pliant.cages.decimating import decimated
 from pliant.cages.offset import offset_surface
 from pliant.cages.pushing import push_out
 from pliant.cages.symmetry import checked_axis, symmetrized, with_mirror_image
@@ -123,17 +123,8 @@ def _symmetric(
 
 def _simplified(points: Points, triangles: Triangles, vertices: int) -> tuple[Points, Triangles]:
     """At most ``vertices`` vertices: coarsely first, then without letting faces cut one another."""
-    coarse, faces = _decimated(points, triangles, _DENSE * vertices, careful=False)
+    coarse, faces = decimated(points, triangles, _DENSE * vertices, careful=False)
     if len(self_crossings(coarse, faces)):
         coarse, faces = points, triangles
     euler = len(coarse) - len(faces) // 2
-    return _decimated(coarse, faces, 2 * (vertices - euler), careful=True)
-
-
-def _decimated(points: Points, triangles: Triangles, faces: int, *, careful: bool) -> tuple[Points, Triangles]:
-    given = np.asfortranarray(points), np.asfortranarray(triangles.astype(np.int32))
-    found, corners, _, _ = import_igl().qslim(*given, max_m=max(faces, 4), block_intersections=careful)
-    used = np.unique(corners)
-    place = np.full(len(found), -1)
-    place[used] = np.arange(len(used))
-    return np.ascontiguousarray(found[used]), np.ascontiguousarray(place[corners], np.int64)
+    return decimated(coarse, faces, 2 * (vertices - euler), careful=True)

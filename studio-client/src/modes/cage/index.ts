@@ -48,6 +48,7 @@ class CageMode extends PointsMode {
   private faces: CageFaces | null = null;
   private loaded = "";
   private rows: Row[] = [];
+  private known: string[] | null = null;
   private ends: (() => void)[] = [];
 
   constructor(studio: Studio) {
@@ -76,12 +77,14 @@ class CageMode extends PointsMode {
       this.plans.state.onChange(() => this.planes.show()),
       studio.meshLoaded.onChange(() => this.plans.change({ cuts: [] })),
       studio.session.scene.onChange(() => this.forgetComparison()),
+      studio.session.scene.watch(() => this.takeNew()),
     ];
     this.planes.show();
   }
 
   override leave(): void {
     for (const end of this.ends) end();
+    this.known = null;
     this.faces?.dispose();
     this.faces = null;
     this.planes.leave();
@@ -223,6 +226,14 @@ class CageMode extends PointsMode {
         table: answer.arrays["table"]!,
       },
     );
+  }
+
+  /** A cage that has just been built is the one to be dragged. */
+  private takeNew(): void {
+    const names = (this.studio.scene?.layers ?? []).filter((layer) => layer.kind === "cage").map((layer) => layer.name);
+    const built = names.find((name) => !this.known?.includes(name));
+    if (this.known && built !== undefined) this.studio.activeLayer.set(built);
+    this.known = names;
   }
 
   /** Which coordinates the cage has. */
