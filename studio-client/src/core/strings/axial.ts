@@ -5,8 +5,8 @@ import type { Strings } from "./strings";
 export const AXIAL = {
   modeAxial: ["Bend and twist", "弯曲与扭转"],
   hintAxial: [
-    "Add a deformer above, then drag its handles: red for its numbers, grey for its bounds, orange for its origin, green for its axis. Ctrl snaps.",
-    "先在上方添加变形器，再拖动手柄：红色调数值，灰色调边界，橙色调原点，绿色调轴向。Ctrl 吸附。",
+    "Add a deformer above, then drag its handles: red for its numbers, grey for its bounds, orange for its origin, green for its axis. Ctrl snaps; F shows all.",
+    "先在上方添加变形器，再拖动手柄：红色调数值，灰色调边界，橙色调原点，绿色调轴向。Ctrl 吸附，F 显示全部。",
   ],
   noAxis: ["Choose a layer with an axis, or add one above the canvas.", "请选择带轴的图层，或在画布上方添加。"],
   axis: ["Axis", "轴"],
