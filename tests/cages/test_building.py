@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
+
 import numpy as np
 import pytest
 from pyvista import examples
@@ -126,3 +128,13 @@ def test_bad_wishes_are_named():
         build_cage(VASE, method="magic")
     with pytest.raises(InvalidTarget, match="has none"):
         build_cage(PolygonMesh(VASE.points))
+
+
+def test_beside_other_threads_the_same_cage_is_built():
+    """There libigl works in a process of its own."""
+    mesh = vase(200, 24, 16)
+    with ThreadPoolExecutor(1) as pool:
+        beside = pool.submit(build_cage, mesh, 60).result()
+    here = build_cage(mesh, 60)
+    assert beside.points.tolist() == here.points.tolist()
+    assert beside.triangles.tolist() == here.triangles.tolist()
