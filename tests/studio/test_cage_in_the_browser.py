@@ -84,7 +84,8 @@ def test_other_coordinates_stand_beside_and_follow_the_drag(launched, view):
     top = int(np.argmax(cage.rest @ [1, -1, 1]))
     page.page.get_by_label("A click takes").select_option("point")
     page.settled()
-    page.drag(corner(page, top), (20, -40), steps=6, release=False)
+    before = corner(page, top)
+    page.drag(before, (20, -40), steps=6, release=False)
     page.until("window.pliantStudio.latencies.length > 0")
 
     def drawn(kind):
@@ -106,6 +107,7 @@ def test_other_coordinates_stand_beside_and_follow_the_drag(launched, view):
 
     page.settled()
     assert np.linalg.norm(held().controls - cage.rest) > 0.1
+    assert np.abs(corner(page, top) - before - [20, -40]).max() < 6  # no arrow of the gizmo has taken it
     follows(held())  # live, while the pointer holds on
     page.picture("cage-beside")
     page.page.mouse.up()

@@ -122,6 +122,7 @@ export class PointsMode implements Mode {
     else if (!group.every((index) => points.selected.has(index))) points.choose(group, "only");
     else points.last = found;
     this.look();
+    if (this.gizmo) this.gizmo.enabled = false;
     this.grip = new Grip(this.studio.viewport, points.at(found), pointer);
     return true;
   }
@@ -141,6 +142,7 @@ export class PointsMode implements Mode {
   up(pointer: Pointer): void {
     if (this.frame.drawing) this.takeRectangle(pointer);
     this.grip = null;
+    if (this.gizmo) this.gizmo.enabled = true;
     if (this.motion) void this.finish();
   }
 

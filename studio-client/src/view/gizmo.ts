@@ -25,6 +25,11 @@ export class Gizmo {
     return this.controls.enabled && this.controls.object !== undefined && this.controls.axis !== null;
   }
 
+  /** Whether it takes clicks: not while something else is held, where an arrow may point at the eye. */
+  set enabled(enabled: boolean) {
+    this.controls.enabled = enabled;
+  }
+
   get dragging(): boolean {
     return this.controls.dragging;
   }
