@@ -64,10 +64,7 @@ class Linking:
         ]
         self._faces, self._owners = [], []
         for region in np.unique(self.parts.sides).tolist():
-            faces = None if region in places else self._simple(region)
-            faces = (
-                self._along_surface(region, places.get(region, 0), near.get(region, _NONE)) if faces is None else faces
-            )
+            faces = self._region(region, places, near)
             if faces is None:
                 raise InvalidParameter(f"{self.named([region])} cannot be linked: add a cut where it branches")
             self._faces += faces
@@ -80,6 +77,12 @@ class Linking:
             f"the region around cut{'s' * (len(numbers) > 1)} {', '.join(map(str, numbers))}"
             for numbers in map(self._cuts_of, regions)
         )
+
+    def _region(self, region: int, places: Mapping[int, int], near: Mapping[int, Points]) -> list[Ring] | None:
+        """Faces along the surface where that is wanted, else the fewest; in the other way where one does not do."""
+        if region in places:
+            return self._along_surface(region, places[region], near.get(region, _NONE)) or self._simple(region)
+        return self._simple(region) or self._along_surface(region, 0, _NONE)
 
     def _simple(self, region: int) -> list[Ring] | None:
         """The fewest faces: a cap, a tube, or the hull of the rings; None where a ring is inside that."""
@@ -103,7 +106,15 @@ class Linking:
         corners = np.concatenate([number * sides + np.arange(sides) for number in numbers])
         points = np.concatenate([points, np.concatenate(self._points)[corners]])
         seeds = count + np.arange(len(corners))
-        found = clustered(points, np.concatenate(collars), seeds, near, wanted, self.room, np.concatenate(border))
+        found = clustered(
+            points,
+            np.concatenate(collars),
+            seeds,
+            near,
+            wanted,
+            self.room,
+            np.concatenate(border),
+        )
         if found is None:
             return None
         first = sum(map(len, self._points))
