@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from distributed import Client, LocalCluster
+from distributed.core import Status
 
 import pliant as pl
 from pliant.batch.crews import Crew, Pool
@@ -73,8 +74,9 @@ def cluster():
 
 def test_a_cluster_whose_workers_are_killed(cluster, stack, many, serial, tmp_path):
     def living():
-        pids = [nanny.process.pid for nanny in cluster.workers.values() if nanny.process is not None]
-        return [pid for pid in pids if pid is not None]
+        """Who works: a cluster gives up a worker that is killed while it begins."""
+        processes = [nanny.process for nanny in cluster.workers.values()]
+        return [each.pid for each in processes if each is not None and each.status == Status.running and each.pid]
 
     with Client(cluster) as client:
         run = pl.run_batch(stack, many, tmp_path / "out" / "{stem}.ply", executor=client)
