@@ -44,13 +44,14 @@ class View:
 
     def drawn(self):
         """Wait until a mesh is there, and all that was asked for has been drawn."""
-        self.until("document.querySelector('.start').hidden && window.pliantStudio.frames > 1")
-        self.settled()
+        shown = "document.querySelector('.start').hidden && window.pliantStudio.frames > 1"
+        self.until(shown, patience=60)  # the first page of a browser translates its shaders first
+        self.settled(patience=60)
 
-    def settled(self):
+    def settled(self, patience=15.0):
         """Wait until the page shows what the session shows, and draws no more."""
-        self.until(f"window.pliantStudio.revision === {self.session.revision}")
-        self.until("!window.pliantStudio.waiting")
+        self.until(f"window.pliantStudio.revision === {self.session.revision}", patience)
+        self.until("!window.pliantStudio.waiting", patience)
         before = -1
         while before != (now := self.ask("window.pliantStudio.frames")):
             before = now
