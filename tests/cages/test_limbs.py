@@ -12,7 +12,7 @@ from pliant.cages.checking import check_cage
 from pliant.cages.linking import Linking
 from pliant.cages.parting import parted
 from pliant.cages.sections import Cut, cut_loop, triangle_edges
-from pliant.errors import InvalidParameter
+from pliant.errors import InvalidParameter, NotConverged
 from pliant.field.volumes import volume
 from pliant.mesh import PolygonMesh
 
@@ -119,6 +119,21 @@ def test_a_mesh_that_is_inside_out_gets_the_same_cage():
     ]
     assert check_cage(cages[1], mesh).ok
     assert len(cages[0].points) == len(cages[1].points)
+
+
+def test_progress_is_told_and_may_end_the_work():
+    parts = []
+    builder = with_cuts(quadruped(), QUADRUPED_CUTS)
+    builder.build(rounds=0, progress=parts.append)
+    assert parts[0] == 0.0
+    assert parts == sorted(parts)
+    assert parts[-1] < 1
+
+    def stop(part):
+        raise NotConverged("stopped")
+
+    with pytest.raises(NotConverged, match="stopped"):
+        builder.build(progress=stop)
 
 
 def test_cuts_that_cross_are_named():
