@@ -176,3 +176,9 @@ def test_whole_numbers_are_numbers(random):
     same = parse_kernel("gaussian(sigma=3.0, scale=2.0) + bspline(4.0, 1.0)")
     np.testing.assert_array_equal(kernel.diagonal(points), same.diagonal(points))
     np.testing.assert_array_equal(kernel(points, points), same(points, points))
+
+
+@pytest.mark.parametrize("scale", [1e300, 1e-300, 10**400, -1.0, np.nan, "wide"])
+def test_a_scale_whose_square_is_no_number_above_zero_is_refused(scale):
+    with pytest.raises(InvalidParameter, match="above zero"):
+        pl.GaussianKernel(sigma=1.0, scale=scale)

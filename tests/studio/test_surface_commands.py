@@ -238,6 +238,13 @@ def test_bad_requests_are_refused(edited, command, values, arrays, cause):
     assert session.dragging is None
 
 
+def test_a_number_that_64_bits_do_not_hold_is_refused(edited):
+    session, page = edited(Scene(BAR))
+    for rings in (1 << 63, (1 << 64) - 1):
+        told = page.refused(session, "surface.grow", {"rings": rings}, index=REGION.astype(np.uint32))
+        assert told["kind"] == "InvalidParameter"
+
+
 def large_ring():
     """A region of more than two thousand vertices, and a handle on its far side."""
     ring = torus(around=72, across=36)

@@ -250,8 +250,8 @@ def positive(what: str, value: Any) -> float:
     """
     try:
         number = float(value)
-    except (TypeError, ValueError) as error:
-        raise InvalidParameter(f"{what} is {value!r}; it must be a number above zero") from error
-    if not 0 < number < np.inf:
-        raise InvalidParameter(f"{what} is {number:g}; it must be above zero, and finite")
+    except (TypeError, ValueError, OverflowError) as error:
+        raise InvalidParameter(f"{what} is {repr(value)[:40]}; it must be a number above zero") from error
+    if not 0 < number * number < np.inf or number < 0:
+        raise InvalidParameter(f"{what} is {number:g}; it must be above zero, and its square too, and finite")
     return number

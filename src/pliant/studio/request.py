@@ -16,6 +16,8 @@ from pliant.studio.serving.frames import Arrays, Frame
 if TYPE_CHECKING:
     from pliant.studio.session import Session
 
+_MOST = 1 << 63
+
 
 class Client(Protocol):
     """A page: somewhere to send frames to."""
@@ -53,8 +55,11 @@ class Request:
         return value
 
     def integer(self, name: str, default: int | None = None) -> int:
-        """A whole number."""
-        return int(self._value(name, int, default))
+        """A whole number of 64 bits."""
+        value = int(self._value(name, int, default))
+        if not -_MOST <= value < _MOST:
+            raise InvalidParameter(f"{name} is {value}; that is more than 64 bits hold")
+        return value
 
     def truth(self, name: str) -> bool:
         """True or false."""
