@@ -39,7 +39,8 @@ have been declared in the writer's report: the goal is no undeclared change.""",
 Cases of each deformer with structure, controls and targets drawn at random, over six orders of size. At rest nothing
 moves (1e-12 of the diagonal); pushed and pulled derivatives are transposes (1e-10); they (1e-6) and Jacobians (1e-6)
 agree with finite differences. "Kinks" are points where a map is not smooth within a difference's reach, which are left
-out; "refused" are cases that the deformer refuses with its own error, as a bend tighter than the shape is thick.""",
+out; "refused" are cases that the deformer refuses with its own error, as a bend tighter than the shape is thick.
+Conditioned models, faces, inverses, stacks and further coordinates of cages were tried in a run of their own.""",
     "peers": """## Peers
 
 Where other programs do the same thing, they must agree; differences are parts of the points' extent.""",
@@ -57,8 +58,9 @@ for 99 of 100 answers. What only reads is answered beside the session, of the sc
 long for is computed there; before, when all commands were done one after another, 99 of 100 honest frames took up to
 434 ms, and single rounds a second. What kept the interpreter from all threads, as libigl does, is asked in slices or in
 a process of its own. Edits still wait for one another. Rounds in which other work took the processors too are in the
-table; they are the slow ones. Mended before were a region that grew by as many rings as were asked for, without end,
-and names that are too long.""",
+table; they are the slow ones. This run found two numbers that were too large for what was done with them, a scale and a
+vertex: they are refused by name since. Mended before were a region that grew by as many rings as were asked for,
+without end, and names that are too long.""",
     "losing": """## Batches
 
 A batch on a Dask cluster of processes whose workers are killed, and that is shut down when half is done; the next
