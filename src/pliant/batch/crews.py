@@ -23,12 +23,15 @@ class Crew(ABC):
 
     Parameters
     ----------
+    workers
+        How many there are, as far as that is known.
     width
         How many portions of jobs they have at a time.
     elsewhere
         Whether they are other processes.
     """
 
+    workers: int = 1
     width: int = 1
     elsewhere: bool = False
 
@@ -53,8 +56,8 @@ class Here(Crew):
 class Given(Crew):
     """An executor of the user's."""
 
-    def __init__(self, executor: Executor, workers: int) -> None:
-        self._executor, self.width = executor, 2 * workers
+    def __init__(self, executor: Executor, workers: int, most: int = 0) -> None:
+        self._executor, self.workers, self.width = executor, workers, 2 * max(workers, most)
         self.elsewhere = not isinstance(executor, ThreadPoolExecutor)
         self._work = carry_out_elsewhere if self.elsewhere else carry_out_here
 
@@ -74,7 +77,7 @@ class Pool(Crew):
     elsewhere = True
 
     def __init__(self, workers: int) -> None:
-        self._workers, self.width = workers, 2 * workers
+        self.workers, self.width = workers, 2 * workers
         self._pool = self._started()
 
     def submit(self, parcel: Parcel, jobs: Sequence[Job], strict: bool) -> Future[list[Outcome]]:
@@ -90,7 +93,7 @@ class Pool(Crew):
         self._pool.shutdown(wait=True, cancel_futures=True)
 
     def _started(self) -> ProcessPoolExecutor:
-        pool = ProcessPoolExecutor(self._workers, _context())
+        pool = ProcessPoolExecutor(self.workers, _context())
         try:
             pool.submit(processors).result()
         except BrokenExecutor as error:
@@ -141,7 +144,7 @@ def _given(executor: Any) -> Crew:
     if isinstance(executor, Executor):
         return Given(executor, getattr(executor, "_max_workers", _MANY))
     if hasattr(executor, "get_executor") and hasattr(executor, "nthreads"):  # a client of Dask's
-        return Given(executor.get_executor(), max(_MANY, sum(executor.nthreads().values())))
+        return Given(executor.get_executor(), sum(executor.nthreads().values()) or _MANY, _MANY)
     raise InvalidParameter(
         f"a {type(executor).__name__} is no executor: pass one of concurrent.futures, or a client of dask.distributed"
     )

@@ -34,7 +34,7 @@ class _Dispatch:
         self._done: SimpleQueue[Future[list[Outcome]]] = SimpleQueue()
         self._suspects: deque[Job] = deque()
         self._deaths: Counter[int] = Counter()
-        self._pace = float("inf")  # seconds a job, so far; nobody knows before the first is done
+        self._pace = float("inf")  # seconds a job; nobody knows before the first is done
 
     def run(self, waiting: deque[Job]) -> Iterator[Outcome]:
         try:
@@ -55,7 +55,7 @@ class _Dispatch:
     def _send(self, waiting: deque[Job]) -> BaseException | None:
         """Fill the crew's hands; suspects go alone. The error of a crew that takes no jobs."""
         while waiting or self._suspects:
-            if len(self._under_way) >= (1 if self._suspects else self._crew.width):
+            if len(self._under_way) >= self._room():
                 return None
             queue, count = (self._suspects, 1) if self._suspects else (waiting, self._portion(len(waiting)))
             jobs = [queue[i] for i in range(count)]
@@ -67,11 +67,17 @@ class _Dispatch:
             future.add_done_callback(self._done.put)
         return None
 
+    def _room(self) -> int:
+        """How many portions may be under way: one a worker, as long as nobody knows how much work a job is."""
+        if self._suspects:
+            return 1
+        return self._crew.workers if self._pace == float("inf") else self._crew.width
+
     def _portion(self, left: int) -> int:
         """How many of the jobs that are left to send at once, so that in the end all workers have some."""
         if not self._crew.elsewhere:
             return 1
-        return max(1, min(_MOST, int(_PORTION / self._pace), left // (2 * self._crew.width)))
+        return max(1, min(_MOST, int(_PORTION / self._pace), left // (4 * self._crew.workers)))
 
     def _received(self) -> Generator[Outcome, None, BaseException | None]:
         """The next outcomes, or the error that took a worker away."""
@@ -81,7 +87,7 @@ class _Dispatch:
         if lost is None:
             found = future.result()
             last = max(1e-6, sum(each.seconds for each in found) / len(found))
-            self._pace = last if self._pace == float("inf") else 0.8 * self._pace + 0.2 * last
+            self._pace = min(last, 0.8 * self._pace + 0.2 * last)  # the first of a worker may have compiled much
             yield from found
             return None
         alone = len(jobs) == 1 and not self._under_way
