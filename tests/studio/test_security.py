@@ -5,6 +5,7 @@ import itertools
 import socket
 import time
 from functools import cached_property
+from threading import Event
 from urllib.parse import parse_qs, urlsplit
 
 import numpy as np
@@ -304,3 +305,15 @@ def test_a_page_that_goes_gives_up_its_drag(visitor):
         while "error" in answer_to(second, do="drag.begin", **{"with": {"layer": "Lattice"}}).head:
             assert time.monotonic() < end
             time.sleep(0.05)
+
+
+def test_what_only_reads_is_answered_while_an_edit_takes_long(visitor):
+    held, asked = Event(), {"do": "folder.list", "with": {"folder": ""}}
+    with visitor.socket() as link:
+        before = answer_to(link, **asked).head  # it has joined
+        edit = visitor.studio.session.submit(held.wait, 30)
+        try:
+            assert answer_to(link, **asked).head["files"] == before["files"]
+            assert not edit.done()
+        finally:
+            held.set()
