@@ -35,12 +35,15 @@ class View:
 
     def until(self, script, patience=15.0):
         """Wait until a script is true: the page's policy forbids it to evaluate strings itself."""
+        self._wait(lambda: self.page.evaluate(script), patience, script)
+
+    def _wait(self, condition, patience, words):
         end = time.monotonic() + patience
         while time.monotonic() < end:
-            if self.page.evaluate(script):
+            if condition():
                 return
             time.sleep(0.02)
-        raise AssertionError(f"never came true: {script}")
+        raise AssertionError(f"never came true: {words}")
 
     def drawn(self):
         """Wait until a mesh is there, and all that was asked for has been drawn."""
@@ -50,7 +53,8 @@ class View:
 
     def settled(self, patience=15.0):
         """Wait until the page shows what the session shows, and draws no more."""
-        self.until(f"window.pliantStudio.revision === {self.session.revision}", patience)
+        page = lambda: self.page.evaluate("window.pliantStudio.revision")  # noqa: E731
+        self._wait(lambda: page() == self.session.revision, patience, "the page shows the session's revision")
         self.until("!window.pliantStudio.waiting", patience)
         before = -1
         while before != (now := self.ask("window.pliantStudio.frames")):

@@ -209,7 +209,6 @@ def test_layers_are_added_from_the_catalogue_and_edited_by_their_fields(launched
     page.committed(revision + 1)
     assert page.session.scene.stack["Twist"].deformer.angle == pytest.approx(np.pi / 2)
     same_points(page)
-    page.page.keyboard.press("Alt+ArrowDown")
     page.page.locator("[data-layer=Twist]").focus()
     page.page.keyboard.press("Alt+ArrowDown")
     page.committed(revision + 2)

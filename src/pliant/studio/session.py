@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import ExitStack
 from copy import copy
 from pathlib import Path
 from typing import Any
@@ -17,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pliant.errors import InvalidParameter
+from pliant.numerics.compute.one_thread import one_blas_thread
 from pliant.scene.pictures import pictures_folder
 from pliant.scene.scene import Scene
 from pliant.studio.autosave import Autosave
@@ -68,7 +70,8 @@ class Session:
         self.jobs = Jobs(self)
         self.worker = ThreadPoolExecutor(1, "pliant-studio")
         self.readers = ThreadPoolExecutor(_READERS, "pliant-studio-reader")
-        self.worker.submit(_one_blas_thread)
+        self._alone = ExitStack()  # small systems are solved by the dozen: several BLAS threads wait for one another
+        self.worker.submit(self._alone.enter_context, one_blas_thread())
         if scene is not None:
             self.begin(scene, name)
 
@@ -236,6 +239,7 @@ class Session:
         self.jobs.end()
         self.readers.shutdown(wait=True, cancel_futures=True)
         self.worker.shutdown(wait=True, cancel_futures=True)
+        self._alone.close()
         if self.autosave is not None:
             self.autosave.finish()
         self.uploads.remove()
@@ -254,10 +258,3 @@ class Session:
         data = Frame({"event": "scene", "scene": scene_state(self)}).encode()
         for client in clients:
             client.send(data)
-
-
-def _one_blas_thread() -> None:
-    """Small systems are solved here, by the dozen: several BLAS threads wait for one another."""
-    from threadpoolctl import threadpool_limits
-
-    threadpool_limits(1, "blas")

@@ -28,27 +28,37 @@ class _Limit:
 
     def __init__(self) -> None:
         self._lock, self._inside = Lock(), 0
-        self._lowered: Any = None
+        self._before: list[tuple[Any, int]] = []
 
     def enter(self) -> None:
         with self._lock:
             if not self._inside:
-                self._lowered = _controller().limit(limits=1, user_api="blas")
+                self._before = [(library, library.num_threads) for library in _libraries()]
+                _set([(library, 1) for library, _ in self._before])
             self._inside += 1
 
     def leave(self) -> None:
         with self._lock:
             self._inside -= 1
             if not self._inside:
-                self._lowered.restore_original_limits()
+                _set(self._before)
 
 
 _limit = _Limit()
 
 
+def _set(counts: list[tuple[Any, int]]) -> None:
+    """Give libraries their numbers of threads, whichever thread asked the last time."""
+    for library, count in counts:
+        forget = getattr(library, "clear_controlling_thread", lambda **_: None)
+        forget(force=True)  # else a library listens to the first thread that has set its number, and to no other
+        library.set_num_threads(count)
+        forget(force=True)
+
+
 @cache
-def _controller() -> Any:
+def _libraries() -> list[Any]:
     import scipy.linalg  # noqa: F401 -- NumPy and SciPy bring a library each: what is not loaded is not found
     from threadpoolctl import ThreadpoolController
 
-    return ThreadpoolController()
+    return list(ThreadpoolController().select(user_api="blas").lib_controllers)
