@@ -21,7 +21,7 @@ from pliant.examples import vase
 
 FOLDER = Path(tempfile.gettempdir()) / "pliant-benchmark-batch"
 CONTEXT = get_context("spawn")
-SMALL, TINY = 250, 150  # files a round
+SMALL, TINY = 1000, 300  # files
 
 
 def files(name: str, count: int, different: int, around: int, along: int) -> list[Path]:
@@ -100,7 +100,7 @@ def posed(shape: pl.PolygonMesh, count: int) -> list[pl.Cage]:
 
 
 def binding(two: ProcessPoolExecutor) -> list[Comparison]:
-    """Small files, a thousand in all, against a loop that binds each anew."""
+    """A thousand small files, against a loop that binds each anew."""
     found = []
     for different, words in ((1, "of one shape, each posed its own way"), (SMALL, "of as many shapes, one pose")):
         paths = files(f"small{different}", SMALL, different, 40, 30)
@@ -111,7 +111,7 @@ def binding(two: ProcessPoolExecutor) -> list[Comparison]:
             "this process": batch(cages[0], paths, controls=tasks, workers=0),
             "a loop that binds each": loop(cages, paths),
         }
-        found.append(Comparison(f"{SMALL} files of {thousands(paths[0])} points {words}, a cage", ways, rounds=4))
+        found.append(Comparison(f"{SMALL:,} files of {thousands(paths[0])} points {words}, a cage", ways, rounds=3))
     return found
 
 
