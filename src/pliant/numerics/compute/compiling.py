@@ -14,7 +14,7 @@ _jit: Any = numba.njit  # whose declared types leave out the options on wrappers
 _OPTIONS = {
     "nogil": True,
     "fastmath": {"contract", "reassoc"},
-    "error_model": "numpy",  # no kernel divides by zero: nothing asks before each division
+    "error_model": "numpy",  # division by zero gives inf or NaN, as in arrays: nothing asks before each one
     "no_cfunc_wrapper": True,
 }
 
