@@ -19,16 +19,18 @@ from pliant.numerics.compute.compiling import inlined, kernel
 
 
 @inlined
+def _coordinate(points, n, frame, axis):
+    """A point's coordinate on the grid along one axis."""
+    x, y, z = points[3 * n], points[3 * n + 1], points[3 * n + 2]
+    return x * frame[axis, 0] + y * frame[axis, 1] + z * frame[axis, 2] + frame[axis, 3]
+
+
+@inlined
 def _place(points, n, frame, keep, shape, cell, local):
     """The cell of a point and where it is in there; False beyond ``keep``."""
     inside = True
     for axis in range(3):
-        q = (
-            points[3 * n] * frame[axis, 0]
-            + points[3 * n + 1] * frame[axis, 1]
-            + points[3 * n + 2] * frame[axis, 2]
-            + frame[axis, 3]
-        )
+        q = _coordinate(points, n, frame, axis)
         inside = inside and keep[0, axis] <= q <= keep[1, axis]
         q = min(max(q, 0.0), shape[axis] - 1.0)
         cell[axis] = min(int(q), shape[axis] - 2)
@@ -63,16 +65,14 @@ def evaluate(points, start, stop, frame, keep, lattice, shape, base, out):
 @kernel
 def differentiate(points, start, stop, frame, keep, lattice, shape, out):
     """Add the derivative of the interpolated value with respect to position to (n, 3, 3); 0 where values go on."""
-    cell, local, q = np.empty(3, np.int64), np.empty(3), np.empty(3)
+    cell, local = np.empty(3, np.int64), np.empty(3)
     share, slope, gradient = np.empty((3, 2)), np.empty((3, 2)), np.empty(3)
     for n in range(start, stop):
         if not _place(points, n, frame, keep, shape, cell, local):
             continue
         for axis in range(3):
-            q[axis] = frame[axis, 3]
-            for a in range(3):
-                q[axis] += points[3 * n + a] * frame[axis, a]
-            inside = 1.0 if 0.0 <= q[axis] <= shape[axis] - 1.0 else 0.0
+            q = _coordinate(points, n, frame, axis)
+            inside = 1.0 if 0.0 <= q <= shape[axis] - 1.0 else 0.0
             share[axis, 0], share[axis, 1] = 1.0 - local[axis], local[axis]
             slope[axis, 0], slope[axis, 1] = -inside, inside
         for c in range(3):

@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pliant.numerics.compute.chunks import for_chunks
+from pliant.numerics.maps.full_lanes import LANES, filled
 from pliant.numerics.ragged import source
 
 Floats = NDArray[np.float64]
 
 CHUNK = 16_384  # points a chunk: hundreds of centres are work enough
-_LANES = 8
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,10 +39,10 @@ class RadialBasis:
         """Out (n, 3) = base + linear (3, 4) at the points + the sum of phi times (k, 3) values."""
         from pliant.numerics.maps.radial_kernels import radial_sum
 
-        if len(points) < _LANES:
-            few = np.empty((_LANES, 3))
+        if len(points) < LANES:
+            few = np.empty((LANES, 3))
             if len(points):
-                self.sum(_filled(points), values, linear, _filled(base), few)
+                self.sum(filled(points), values, linear, filled(base), few)
             out[:] = few[: len(points)]
             return
         flat, under, target = source(points.reshape(-1)), source(base.reshape(-1)), out.reshape(-1)
@@ -59,8 +59,8 @@ class RadialBasis:
         """(n, 3, 3) linear (3, 3) + the derivative of the sum by position; at a tip that of the other centres."""
         from pliant.numerics.maps.radial_kernels import radial_slopes
 
-        out = np.empty((max(len(points), _LANES), 3, 3))
-        flat, target = _filled(points).reshape(-1), out.reshape(-1)
+        out = np.empty((max(len(points), LANES), 3, 3))
+        flat, target = filled(points).reshape(-1), out.reshape(-1)
         centers, weights = self.centers.reshape(-1), values.reshape(-1)
         for_chunks(
             lambda first, stop: radial_slopes(
@@ -75,7 +75,7 @@ class RadialBasis:
         """(k, 3) for each centre the sum over the points of phi times (n, 3) values."""
         from pliant.numerics.maps.radial_kernels import radial_gather
 
-        spare = -len(points) % _LANES
+        spare = -len(points) % LANES
         flat = np.vstack([points, np.zeros((spare, 3))]).reshape(-1)
         given = np.vstack([values, np.zeros((spare, 3))]).reshape(-1)
         pieces = -(-len(flat) // (3 * CHUNK))
@@ -93,10 +93,3 @@ class RadialBasis:
         difference = self.centers[:, None] - self.centers[None]
         r = self.scale * np.sqrt((difference**2).sum(axis=2))
         return np.asarray(np.clip(1 - r, 0, 1) ** 4 * (4 * r + 1) if self.compact else -r)
-
-
-def _filled(points: Floats) -> Floats:
-    """At least eight points: lanes are always full."""
-    if len(points) >= _LANES:
-        return points
-    return np.vstack([points, np.zeros((_LANES - len(points), 3))])

@@ -17,6 +17,7 @@ import numpy as np
 from pliant.numerics.compute.compiling import inlined, kernel
 from pliant.numerics.compute.lane_functions import quick_root
 from pliant.numerics.compute.lanes import (
+    affine,
     clamp,
     get,
     load,
@@ -63,9 +64,7 @@ def radial_sum(points, first, stop, centers, scale, support, values, linear, bas
     for block in range(first, stop, 8):
         at = min(block, stop - 8)
         x, y, z = load_triples(points, 3 * at)
-        a = x * linear[0, 0] + y * linear[0, 1] + z * linear[0, 2] + linear[0, 3]
-        b = x * linear[1, 0] + y * linear[1, 1] + z * linear[1, 2] + linear[1, 3]
-        c = x * linear[2, 0] + y * linear[2, 1] + z * linear[2, 2] + linear[2, 3]
+        a, b, c = affine(linear, 0, x, y, z), affine(linear, 1, x, y, z), affine(linear, 2, x, y, z)
         for k in range(len(centers) // 3):
             dx, dy, dz = _from(centers, k, x, y, z)
             phi = _phi(dx * dx + dy * dy + dz * dz, scale, support)

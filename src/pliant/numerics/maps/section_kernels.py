@@ -21,6 +21,7 @@ import numpy as np
 
 from pliant.numerics.compute.compiling import inlined, kernel
 from pliant.numerics.compute.lanes import (
+    affine,
     clamp,
     get,
     load,
@@ -37,11 +38,6 @@ from pliant.numerics.compute.sincos import sincos
 
 
 @inlined
-def _along(frame, row, x, y, z):
-    return x * frame[row, 0] + y * frame[row, 1] + z * frame[row, 2] + frame[row, 3]
-
-
-@inlined
 def _turned(frame, axis, du, dv, ds):
     """One coordinate in the world of a local vector."""
     return du * frame[0, axis] + dv * frame[1, axis] + ds * frame[2, axis]
@@ -54,10 +50,10 @@ def measure(points, first, stop, frame, radial, q):
         at = min(block, stop - 8)
         x, y, z = load_triples(points, 3 * at)
         if radial:
-            u, v = _along(frame, 0, x, y, z), _along(frame, 1, x, y, z)
+            u, v = affine(frame, 0, x, y, z), affine(frame, 1, x, y, z)
             store(q, at - first, root(u * u + v * v))
         else:
-            store(q, at - first, _along(frame, 2, x, y, z))
+            store(q, at - first, affine(frame, 2, x, y, z))
 
 
 @inlined
@@ -79,7 +75,7 @@ def displace(points, first, stop, frame, table, rows, base, out):
     for block in range(first, stop, 8):
         at = min(block, stop - 8)
         x, y, z = load_triples(points, 3 * at)
-        u, v = _along(frame, 0, x, y, z), _along(frame, 1, x, y, z)
+        u, v = affine(frame, 0, x, y, z), affine(frame, 1, x, y, z)
         du = _component(table, rows, 0, at - first, u, v)
         dv = _component(table, rows, 1, at - first, u, v)
         ds = _component(table, rows, 2, at - first, u, v)
@@ -118,7 +114,7 @@ def differentiate(points, first, stop, frame, table, rows, slopes, slope_rows, q
     for block in range(first, stop, 8):
         at = min(block, stop - 8)
         x, y, z = load_triples(points, 3 * at)
-        u, v = _along(frame, 0, x, y, z), _along(frame, 1, x, y, z)
+        u, v = affine(frame, 0, x, y, z), affine(frame, 1, x, y, z)
         for i in range(3):
             steep = _component(slopes, slope_rows, i, at - first, u, v)
             by_u = _entry(table, rows[3 * i + 1], at - first)
@@ -159,8 +155,8 @@ def similar(points, first, stop, frame, ramp, pieces, angle, growth, out):
     for block in range(first, stop, 8):
         at = min(block, stop - 8)
         x, y, z = load_triples(points, 3 * at)
-        u, v = _along(frame, 0, x, y, z), _along(frame, 1, x, y, z)
-        h, _ = _profile(_along(frame, 2, x, y, z), ramp, pieces)
+        u, v = affine(frame, 0, x, y, z), affine(frame, 1, x, y, z)
+        h, _ = _profile(affine(frame, 2, x, y, z), ramp, pieces)
         scale = h * growth + 1.0
         sine, cosine = spread(0.0), scale
         if angle != 0.0:
@@ -184,8 +180,8 @@ def similar_slopes(points, first, stop, frame, ramp, pieces, angle, growth, out)
     for block in range(first, stop, 8):
         at = min(block, stop - 8)
         x, y, z = load_triples(points, 3 * at)
-        u, v = _along(frame, 0, x, y, z), _along(frame, 1, x, y, z)
-        h, slope = _profile(_along(frame, 2, x, y, z), ramp, pieces)
+        u, v = affine(frame, 0, x, y, z), affine(frame, 1, x, y, z)
+        h, slope = _profile(affine(frame, 2, x, y, z), ramp, pieces)
         slope = slope * ramp[0]
         scale, grows, turns = h * growth + 1.0, slope * growth, slope * angle
         sine, cosine = spread(0.0), spread(1.0)

@@ -18,21 +18,23 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pliant.numerics.compute.chunks import for_chunks
+from pliant.numerics.maps.full_lanes import LANES, filled
 
 Floats = NDArray[np.float64]
 Entries = Mapping[tuple[int, int], Any]
 """The T_ij that are not zero, by (i, j): arrays shaped as q, or numbers."""
+Profile = tuple[Floats, Floats]
+"""From s to the profile's variable, and its cubic pieces: see :mod:`pliant.numerics.maps.section_kernels`."""
 
 SPAN = 16_384  # points a span: its tables stay in the second-level cache
-_LANES = 8
 
 
 def section_of(points: Floats, frame: Floats, radial: bool = False) -> Floats:
     """(n,) the q of each of (n, 3) points: s, or r where ``radial``."""
     from pliant.numerics.maps import section_kernels
 
-    result = np.empty(max(len(points), _LANES))
-    flat = _filled(points).reshape(-1)
+    result = np.empty(max(len(points), LANES))
+    flat = filled(points).reshape(-1)
     for_spans(
         lambda first, stop: section_kernels.measure(flat, first, stop, frame, radial, result[first:stop]), len(result)
     )
@@ -45,9 +47,9 @@ def displaced(
     """Out (n, 3) = base (n, 3) + the displacement of (n, 3) points; all in C order. Tells whether all is finite."""
     from pliant.numerics.maps import section_kernels
 
-    if len(points) < _LANES:
-        few = np.empty((_LANES, 3))
-        finite = not len(points) or displaced(_filled(points), frame, entries, _filled(base), few, radial)
+    if len(points) < LANES:
+        few = np.empty((LANES, 3))
+        finite = not len(points) or displaced(filled(points), frame, entries, filled(base), few, radial)
         out[:] = few[: len(points)]
         return finite
     flat, under, target = points.reshape(-1), base.reshape(-1), out.reshape(-1)
@@ -74,8 +76,8 @@ def jacobians(
     from pliant.numerics.maps import section_kernels
 
     count = len(points)
-    out = np.empty((max(count, _LANES), 3, 3))
-    flat, target = _filled(points).reshape(-1), out.reshape(-1)
+    out = np.empty((max(count, LANES), 3, 3))
+    flat, target = filled(points).reshape(-1), out.reshape(-1)
 
     def work(first: int, stop: int) -> None:
         q = np.empty(stop - first)
@@ -95,9 +97,9 @@ def similar(points: Floats, frame: Floats, profile: Profile, angle: float, growt
     """
     from pliant.numerics.maps import section_kernels
 
-    if len(points) < _LANES:
-        few = np.empty((_LANES, 3))
-        finite = not len(points) or similar(_filled(points), frame, profile, angle, growth, few)
+    if len(points) < LANES:
+        few = np.empty((LANES, 3))
+        finite = not len(points) or similar(filled(points), frame, profile, angle, growth, few)
         out[:] = few[: len(points)]
         return finite
     flat, target = points.reshape(-1), out.reshape(-1)
@@ -114,17 +116,13 @@ def similar_jacobians(points: Floats, frame: Floats, profile: Profile, angle: fl
     """(n, 3, 3) the derivative of :func:`similar`."""
     from pliant.numerics.maps import section_kernels
 
-    out = np.empty((max(len(points), _LANES), 3, 3))
-    flat, target = _filled(points).reshape(-1), out.reshape(-1)
+    out = np.empty((max(len(points), LANES), 3, 3))
+    flat, target = filled(points).reshape(-1), out.reshape(-1)
     for_chunks(
         lambda first, stop: section_kernels.similar_slopes(flat, first, stop, frame, *profile, angle, growth, target),
         len(out) if len(points) else 0,
     )
     return out[: len(points)]
-
-
-Profile = tuple[Floats, Floats]
-"""From s to the profile's variable, and its cubic pieces: see :mod:`pliant.numerics.maps.section_kernels`."""
 
 
 def for_spans(work: Callable[[int, int], None], count: int) -> None:
@@ -137,13 +135,6 @@ def for_spans(work: Callable[[int, int], None], count: int) -> None:
             work(edges[k], edges[k + 1])
 
     for_chunks(several, spans if count else 0, 4)
-
-
-def _filled(points: Floats) -> Floats:
-    """At least eight points: lanes are always full."""
-    if len(points) >= _LANES:
-        return points
-    return np.vstack([points, np.zeros((_LANES - len(points), 3))])
 
 
 def _tabulated(entries: Entries, count: int) -> tuple[Floats, NDArray[np.int64]]:
