@@ -21,8 +21,8 @@ import numpy as np
 
 from pliant.numerics.compute.compiling import inlined, kernel
 from pliant.numerics.compute.lane_functions import angle, log_ratio, magnitude, where_less, with_sign
-from pliant.numerics.compute.lanes import get, load, root, spread, store
-from pliant.numerics.coordinates.mean_value import look
+from pliant.numerics.compute.lanes import get, load, spread, store
+from pliant.numerics.coordinates.sight import edge_seen, look, measure_arms
 
 _TINY = 1e-60  # squared, still a number
 _PART = 0.07957747154594767  # 1 / 4 pi
@@ -30,23 +30,11 @@ _EDGE, _SLOPE = 16, 80  # numbers kept for an edge: 2 or 10 times eight lanes
 
 
 @inlined
-def _lengths(arms, count, lengths):
-    for j in range(count):
-        x, y, z = load(arms, 24 * j), load(arms, 24 * j + 8), load(arms, 24 * j + 16)
-        store(lengths, 8 * j, root(x * x + y * y + z * z))
-
-
-@inlined
 def _logarithms(edges, lines, arms, lengths, kept, width):
     """For each edge: L, and the product of the arms to its ends."""
     zero = spread(0.0)
     for e in range(len(edges)):
-        p, q = 24 * edges[e, 0], 24 * edges[e, 1]
-        px, py, pz = load(arms, p), load(arms, p + 8), load(arms, p + 16)
-        ex, ey, ez = get(lines, 3 * e), get(lines, 3 * e + 1), get(lines, 3 * e + 2)
-        cx, cy, cz = py * ez - pz * ey, pz * ex - px * ez, px * ey - py * ex
-        cosine = px * load(arms, q) + py * load(arms, q + 8) + pz * load(arms, q + 16)
-        length = np.sqrt(ex * ex + ey * ey + ez * ez)
+        cx, cy, cz, cosine, length = edge_seen(e, edges, lines, arms)
         one, two = load(lengths, 8 * edges[e, 0]), load(lengths, 8 * edges[e, 1])
         around = one + two
         longer, product = around + length, one * two
@@ -88,7 +76,7 @@ def green_weights(points, first, stop, vertices, edges, lines, triangles, sides,
     kept, sums, stretch = np.empty(_EDGE * len(edges)), np.empty(8 * count), np.empty(8 * len(triangles))
     for n in range(first, stop, 8):
         look(points, tail, n, stop, vertices, arms)
-        _lengths(arms, count, lengths)
+        measure_arms(arms, lengths)
         _logarithms(edges, lines, arms, lengths, kept, _EDGE)
         sums[:] = 0.0
         for t in range(len(triangles)):
@@ -114,19 +102,17 @@ def _edge_slopes(edges, lines, arms, lengths, kept):
     zero = spread(0.0)
     for e in range(len(edges)):
         p, q, at = 24 * edges[e, 0], 24 * edges[e, 1], _SLOPE * e
-        px, py, pz = load(arms, p), load(arms, p + 8), load(arms, p + 16)
-        ex, ey, ez = get(lines, 3 * e), get(lines, 3 * e + 1), get(lines, 3 * e + 2)
-        cx, cy, cz = py * ez - pz * ey, pz * ex - px * ez, px * ey - py * ex
+        cx, cy, cz, _, length = edge_seen(e, edges, lines, arms)
         one, two, cosine = load(lengths, 8 * edges[e, 0]), load(lengths, 8 * edges[e, 1]), load(kept, at + 8)
         square, product = cx * cx + cy * cy + cz * cz, one * two
         gap = where_less(cosine, zero, square / (product - cosine + _TINY), product + cosine)
         inverse = 1.0 / (gap + _TINY)
         turn = (one + two) * inverse / (product + _TINY)
-        length = np.sqrt(ex * ex + ey * ey + ez * ez) * inverse
+        length = length * inverse
         first, second = length / (one + _TINY), length / (two + _TINY)
-        store(kept, at + 16, px * first + load(arms, q) * second)
-        store(kept, at + 24, py * first + load(arms, q + 8) * second)
-        store(kept, at + 32, pz * first + load(arms, q + 16) * second)
+        store(kept, at + 16, load(arms, p) * first + load(arms, q) * second)
+        store(kept, at + 24, load(arms, p + 8) * first + load(arms, q + 8) * second)
+        store(kept, at + 32, load(arms, p + 16) * first + load(arms, q + 16) * second)
         store(kept, at + 40, cx * turn)
         store(kept, at + 48, cy * turn)
         store(kept, at + 56, cz * turn)
@@ -143,7 +129,7 @@ def green_jacobians(points, first, stop, vertices, edges, lines, triangles, side
     kept, sums, bent = np.empty(_SLOPE * len(edges)), np.empty(72), np.empty(48)
     for n in range(first, stop, 8):
         look(points, tail, n, stop, vertices, arms)
-        _lengths(arms, count, lengths)
+        measure_arms(arms, lengths)
         _logarithms(edges, lines, arms, lengths, kept, _SLOPE)
         _edge_slopes(edges, lines, arms, lengths, kept)
         sums[:] = 0.0

@@ -26,29 +26,12 @@ import numpy as np
 
 from pliant.numerics.compute.compiling import inlined, kernel
 from pliant.numerics.compute.lane_functions import angle, magnitude, where_less
-from pliant.numerics.compute.lanes import get, load, load_triples, put, root, spread, store
+from pliant.numerics.compute.lanes import get, load, root, spread, store
+from pliant.numerics.coordinates.sight import TOUCHING, edge_seen, look
 
 _NOISE = 1e-15  # of c . m, relative to its factors: what is below is a triangle seen exactly from its side
-_TOUCHING = 1e-14  # nearer than this to an edge or a vertex is on it
 _TINY = 1e-300
 _EDGE, _SLOPE = 48, 128  # numbers kept for an edge: 6 or 16 times eight lanes
-
-
-@inlined
-def look(points, tail, first, stop, vertices, arms):
-    """From eight points to all vertices: arms (24 m,); lanes that are 1 where a vertex is met."""
-    for n in range(24):
-        put(tail, n, get(points, min(3 * first + n, 3 * stop - 3 + n % 3)))
-    x, y, z = load_triples(tail, 0)
-    zero = spread(0.0)
-    met = zero
-    for j in range(len(vertices) // 3):
-        ax, ay, az = get(vertices, 3 * j) - x, get(vertices, 3 * j + 1) - y, get(vertices, 3 * j + 2) - z
-        store(arms, 24 * j, ax)
-        store(arms, 24 * j + 8, ay)
-        store(arms, 24 * j + 16, az)
-        met = where_less(ax * ax + ay * ay + az * az, zero + _TOUCHING * _TOUCHING, zero + 1.0, met)
-    return met
 
 
 @inlined
@@ -56,11 +39,7 @@ def _edges(edges, lines, arms, kept, width, met):
     """For each edge: c, half of theta / |c|, |c|, theta; lanes that are 1 where an edge is met, too."""
     zero = spread(0.0)
     for e in range(len(edges)):
-        p, q = 24 * edges[e, 0], 24 * edges[e, 1]
-        px, py, pz = load(arms, p), load(arms, p + 8), load(arms, p + 16)
-        ex, ey, ez = get(lines, 3 * e), get(lines, 3 * e + 1), get(lines, 3 * e + 2)
-        cx, cy, cz = py * ez - pz * ey, pz * ex - px * ez, px * ey - py * ex
-        cosine = px * load(arms, q) + py * load(arms, q + 8) + pz * load(arms, q + 16)
+        cx, cy, cz, cosine, length = edge_seen(e, edges, lines, arms)
         sine = root(cx * cx + cy * cy + cz * cz)
         theta = angle(sine, cosine, zero)
         at = width * e
@@ -70,8 +49,7 @@ def _edges(edges, lines, arms, kept, width, met):
         store(kept, at + 24, 0.5 * theta / (sine + _TINY))
         store(kept, at + 32, sine)
         store(kept, at + 40, theta)
-        length = np.sqrt(ex * ex + ey * ey + ez * ez)
-        on_line = where_less(sine, zero + _TOUCHING * length, zero + 1.0, zero)
+        on_line = where_less(sine, zero + TOUCHING * length, zero + 1.0, zero)
         met = where_less(cosine, zero, met + on_line, met)
     return met
 

@@ -6,8 +6,8 @@ import numpy as np
 
 from pliant.numerics.compute.compiling import kernel
 from pliant.numerics.compute.lane_functions import angle, magnitude, with_sign
-from pliant.numerics.compute.lanes import get, load, put, root, spread, store
-from pliant.numerics.coordinates.mean_value import look
+from pliant.numerics.compute.lanes import get, load, put, spread, store
+from pliant.numerics.coordinates.sight import look, measure_arms
 
 
 @kernel
@@ -17,9 +17,7 @@ def solid_angles(points, first, stop, vertices, triangles, out):
     tail, arms, lengths, piece = np.empty(24), np.empty(24 * count), np.empty(8 * count), np.empty(8)
     for n in range(first, stop, 8):
         look(points, tail, n, stop, vertices, arms)
-        for j in range(count):
-            x, y, z = load(arms, 24 * j), load(arms, 24 * j + 8), load(arms, 24 * j + 16)
-            store(lengths, 8 * j, root(x * x + y * y + z * z))
+        measure_arms(arms, lengths)
         total = spread(0.0)
         for t in range(len(triangles)):
             a, b, c = 24 * triangles[t, 0], 24 * triangles[t, 1], 24 * triangles[t, 2]
