@@ -1,4 +1,4 @@
-"""Voronoi cells as kernels take them: flat arrays, and which corners of facets are the same place."""
+"""Voronoi cells as kernels take them: flat arrays."""
 
 from __future__ import annotations
 
@@ -12,14 +12,11 @@ from pliant.numerics.neighbors.voronoi import VoronoiCells
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
 
-SAME_CORNER = 1e-11  # of the largest coordinate: below it, corners of facets are one
-
 
 class CellArrays(NamedTuple):
     """Cells as kernels take them: positions, normals and corners flat; the rest as in :class:`VoronoiCells`.
 
-    ``number`` is that of the cells, ``areas`` (f,) are the facets'. ``meetings`` (c,) says which corners are the same
-    place; the facets that have a corner there are ``meeting_facets``, from ``meeting_starts`` of the place on.
+    ``number`` is that of the cells, ``areas`` (f,) are the facets'.
     """
 
     number: int
@@ -33,29 +30,14 @@ class CellArrays(NamedTuple):
     areas: Floats
     corner_starts: Integers
     corners: Floats
-    meetings: NDArray[np.int32]
-    meeting_starts: Integers
-    meeting_facets: NDArray[np.int32]
 
 
 def flat_cells(cells: VoronoiCells) -> CellArrays:
     """The cells as kernels take them."""
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import connected_components
-    from scipy.spatial import cKDTree
-
-    sizes = np.diff(cells.corner_starts)
-    places = cells.corners + np.repeat(cells.sites[cells.owners], sizes, axis=0)
-    pairs = cKDTree(places).query_pairs(SAME_CORNER * float(np.abs(places).max()), output_type="ndarray")
-    graph = coo_array((np.ones(len(pairs), bool), pairs.T), shape=(len(places), len(places)))
-    count, meetings = connected_components(graph, directed=False)
-    facets = np.repeat(np.arange(len(sizes), dtype=np.int32), sizes)
-    meetings = meetings.astype(np.int32)
-    order = np.argsort(meetings, kind="stable")
     return CellArrays(
         len(cells.sites), cells.sites.reshape(-1), cells.starts, cells.facets.astype(np.int32), cells.owners,
         cells.others, cells.normals.reshape(-1), cells.offsets, _areas(cells), cells.corner_starts,
-        cells.corners.reshape(-1), meetings, np.searchsorted(meetings[order], np.arange(count + 1)), facets[order],
+        cells.corners.reshape(-1),
     )  # fmt: skip
 
 

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 
 from pliant.numerics.compute.chunks import for_chunks
 from pliant.numerics.neighbors.cell_arrays import CellArrays, flat_cells
+from pliant.numerics.neighbors.skeleton import Skeleton
 from pliant.numerics.neighbors.voronoi import VoronoiCells
 
 Floats = NDArray[np.float64]
@@ -65,41 +66,55 @@ class SeedGrid(NamedTuple):
 
 
 class Workspace(NamedTuple):
-    """What a kernel needs to remember about the point at hand, for m sites, f facets and p places of corners.
+    """What a kernel needs to remember about the point at hand, for m sites, f facets and c corners.
 
     Parameters
     ----------
     found, slots, sums
         (m,) the cells that lose something; (m,) where each site is among them, or -1; (8 m,) for each of them its
         volume, the area of the cut, its moment (3,) and the moment of its outline (3,).
-    asked, met, waiting
-        (f,) and (p,) the last search that came by; (p,) corners to go on from.
-    signed, ends
-        Room for a number a corner of a facet, and for six.
+    stamps
+        (2,) numbers that no corner and no facet has yet.
+    met, waiting, apart, signed
+        (c,) where a corner is among those met, plus the stamp; (c,) which are to be followed; (3 c,) and (c,) where
+        those met are, seen from the point, and how much nearer to it.
+    asked, touched, areas, crossed, ends
+        (f,) where a facet is among those touched, plus the stamp; (f,) which those are; (f,) the area nearer to the
+        point; (f,) whether that is a part, and (6 f,) where its outline is cut.
     """
 
     found: NDArray[np.int32]
     slots: NDArray[np.int32]
     sums: Floats
-    asked: Integers
+    stamps: Integers
     met: Integers
     waiting: NDArray[np.int32]
+    apart: Floats
     signed: Floats
+    asked: Integers
+    touched: NDArray[np.int32]
+    areas: Floats
+    crossed: NDArray[np.int8]
     ends: Floats
 
     @classmethod
-    def of(cls, cells: CellArrays) -> Workspace:
+    def of(cls, cells: CellArrays, skeleton: Skeleton) -> Workspace:
         """An empty one."""
-        count, facets, places = cells.number, len(cells.owners), len(cells.meeting_starts) - 1
+        count, facets, corners = cells.number, len(cells.owners), len(skeleton.anchors)
         return cls(
             np.empty(count, np.int32),
             np.full(count, -1, np.int32),
             np.empty(8 * count),
+            np.zeros(2, np.int64),
+            np.full(corners, -1, np.int64),
+            np.empty(corners, np.int32),
+            np.empty(3 * corners),
+            np.empty(max(corners, int(np.diff(cells.corner_starts).max()))),
             np.full(facets, -1, np.int64),
-            np.full(places, -1, np.int64),
-            np.empty(places, np.int32),
-            np.empty(int(np.diff(cells.corner_starts).max())),
-            np.empty(6),
+            np.empty(facets, np.int32),
+            np.empty(facets),
+            np.empty(facets, np.int8),
+            np.empty(6 * facets),
         )
 
 
@@ -138,7 +153,8 @@ class NaturalNeighbors:
 
         cells, flat = self.cells, np.ascontiguousarray(points).reshape(-1)
         kind = sibson_rows.SIBSON if self.kind == "sibson" else sibson_rows.LAPLACE
-        arrays, rounding = self._arrays, 1e-15 * float(np.abs(cells.corners).max())  # of cuts as large as the cube
+        arrays, skeleton = self._arrays, self._skeleton
+        rounding = 1e-15 * float(np.abs(cells.corners).max())  # of cuts as large as the cube
         end = len(cells.sites) if limit is None else limit
         parts: dict[int, tuple[Integers, NDArray[np.int32], Floats, Floats]] = {}
 
@@ -151,8 +167,8 @@ class NaturalNeighbors:
                 ends, columns, values = np.empty(len(order), np.int64), np.empty(room, np.int32), np.empty(room)
                 slopes = np.empty(3 * room if gradients else 0)
                 done = sibson.coordinates(
-                    flat, order, arrays, self._seeds, Workspace.of(arrays), kind, self.on_site, rounding, end,
-                    ends, columns, values, slopes,
+                    flat, order, arrays, skeleton, self._seeds, Workspace.of(arrays, skeleton), kind, self.on_site,
+                    rounding, end, ends, columns, values, slopes,
                 )  # fmt: skip
                 if done == len(order):
                     break
@@ -174,6 +190,10 @@ class NaturalNeighbors:
     @cached_property
     def _arrays(self) -> CellArrays:
         return flat_cells(self.cells)
+
+    @cached_property
+    def _skeleton(self) -> Skeleton:
+        return Skeleton.of(self.cells)
 
     @cached_property
     def _seeds(self) -> SeedGrid:

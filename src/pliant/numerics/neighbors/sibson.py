@@ -1,9 +1,9 @@
 """A kernel for natural-neighbour coordinates, Sibson's (1980) and Laplace's, with their gradients.
 
 If a point x were a site too, its cell would take from the cell of each old site p what lies nearer to x than to p:
-one half-space cut of a cell that is known beforehand. The facets that have something nearer to x hang together by
-their corners that are nearer to x: the search goes from corner to corner, beginning in the cell that x lies in. Should
-it miss something, the coordinates do not reproduce x, and all facets of all cells that lose something are searched.
+one half-space cut of a cell that is known beforehand. The search goes along the cells' edges, beginning in the cell
+that x lies in. Should it miss something, the coordinates do not reproduce x, and all facets of all cells that lose
+something are searched.
 """
 
 from __future__ import annotations
@@ -14,20 +14,25 @@ from pliant.numerics.compute.compiling import inlined, kernel
 from pliant.numerics.compute.pointers import pointer
 from pliant.numerics.neighbors.cell_arrays import CellArrays
 from pliant.numerics.neighbors.natural_neighbors import Workspace
-from pliant.numerics.neighbors.sibson_pieces import share
+from pliant.numerics.neighbors.sibson_edges import follow
+from pliant.numerics.neighbors.sibson_pieces import join, share
 from pliant.numerics.neighbors.sibson_rows import LAPLACE, reproduced, weigh, write
+from pliant.numerics.neighbors.skeleton import Skeleton
 
 
 @kernel
-def coordinates(points, order, cells, seeds, room, kind, on_site, rounding, limit, row_ends, columns, values, slopes):
+def coordinates(
+    points, order, cells, skeleton, seeds, room, kind, on_site, rounding, limit, row_ends, columns, values, slopes
+):
     """Coordinates of some points with respect to the sites.
 
     Parameters
     ----------
     points, order
         (3 n,) positions, and (k,) which of them to take, one after another: best neighbours together.
-    cells, seeds, room
-        As in :class:`pliant.numerics.neighbors.cell_arrays.CellArrays`, and :class:`SeedGrid` and :class:`Workspace` of
+    cells, skeleton, seeds, room
+        :class:`pliant.numerics.neighbors.cell_arrays.CellArrays`,
+        :class:`pliant.numerics.neighbors.skeleton.Skeleton`, and :class:`SeedGrid` and :class:`Workspace` of
         :mod:`pliant.numerics.neighbors.natural_neighbors`.
     kind
         SIBSON or LAPLACE.
@@ -47,7 +52,7 @@ def coordinates(points, order, cells, seeds, room, kind, on_site, rounding, limi
     int
         How many points were done before ``columns`` was full.
     """
-    cells, room = _pointed(cells), _pointed_room(room)
+    cells, skeleton, room = _pointed_cells(cells), _pointed_skeleton(skeleton), _pointed_room(room)
     differentiate = len(slopes) > 0
     outlines = differentiate or kind == LAPLACE
     filled = 0
@@ -66,7 +71,10 @@ def coordinates(points, order, cells, seeds, room, kind, on_site, rounding, limi
             row_ends[row] = filled
             continue
         for attempt in range(2):
-            size = _search(px, py, pz, start, 2 * row + attempt, attempt == 0, cells, rounding, outlines, room)
+            if attempt == 0:
+                size = follow(px, py, pz, start, cells, skeleton, rounding, outlines, room)
+            else:
+                size = _search(px, py, pz, start, cells, rounding, outlines, room)
             total = weigh(px, py, pz, size, room, cells.sites, kind, outlines)
             if reproduced(px, py, pz, size, room, total, cells.sites):
                 break
@@ -76,7 +84,7 @@ def coordinates(points, order, cells, seeds, room, kind, on_site, rounding, limi
 
 
 @inlined
-def _pointed(cells):
+def _pointed_cells(cells):
     return CellArrays(
         cells.number,
         pointer(cells.sites),
@@ -89,9 +97,22 @@ def _pointed(cells):
         pointer(cells.areas),
         pointer(cells.corner_starts),
         pointer(cells.corners),
-        pointer(cells.meetings),
-        pointer(cells.meeting_starts),
-        pointer(cells.meeting_facets),
+    )
+
+
+@inlined
+def _pointed_skeleton(skeleton):
+    return Skeleton(
+        pointer(skeleton.anchors),
+        pointer(skeleton.places),
+        pointer(skeleton.starts),
+        pointer(skeleton.ends),
+        pointer(skeleton.side_starts),
+        pointer(skeleton.sides),
+        pointer(skeleton.triangles),
+        pointer(skeleton.nearest),
+        pointer(skeleton.cell_starts),
+        pointer(skeleton.cell_corners),
     )
 
 
@@ -101,63 +122,34 @@ def _pointed_room(room):
         pointer(room.found),
         pointer(room.slots),
         pointer(room.sums),
-        pointer(room.asked),
+        pointer(room.stamps),
         pointer(room.met),
         pointer(room.waiting),
+        pointer(room.apart),
         pointer(room.signed),
+        pointer(room.asked),
+        pointer(room.touched),
+        pointer(room.areas),
+        pointer(room.crossed),
         pointer(room.ends),
     )
 
 
 @inlined
-def _search(px, py, pz, start, stamp, by_corners, cells, rounding, outlines, room):
-    """Sums of all cells that lose something to a point in the cell of ``start``; how many they are.
-
-    Either the first touched facet leads, by its corners, to all others; or all facets of all cells found are asked.
-    """
-    room.found[0], room.slots[start] = start, 0
-    for k in range(8):
-        room.sums[k] = 0.0
-    size, at, queued, begun = 1, 0, 0, False
-    source, place, end = cells.facets, 0, 0
-    while True:
-        if place == end:
-            if queued > 0:
-                queued -= 1
-                corner = room.waiting[queued]
-                source, place, end = (
-                    cells.meeting_facets,
-                    cells.meeting_starts[corner],
-                    cells.meeting_starts[corner + 1],
-                )
-            elif at < size and not begun:
-                cell = room.found[at]
-                source, place, end = cells.facets, cells.starts[cell], cells.starts[cell + 1]
-                at += 1
-            else:
-                return size
-            continue
-        facet = source[place]
-        place += 1
-        if room.asked[facet] != stamp:
-            room.asked[facet] = stamp
-            size, touched = share(facet, px, py, pz, cells, rounding, outlines, size, room)
-            if touched and by_corners:
-                begun = True
-                queued = _meet(facet, stamp, cells, room, queued)
-
-
-@inlined
-def _meet(facet, stamp, cells, room, queued):
-    """Let the corners of a facet that are nearer to the point wait, if they have not been met."""
-    base = cells.corner_starts[facet]
-    for k in range(cells.corner_starts[facet + 1] - base):
-        corner = cells.meetings[base + k]
-        if room.signed[k] > 0.0 and room.met[corner] != stamp:
-            room.met[corner] = stamp
-            room.waiting[queued] = corner
-            queued += 1
-    return queued
+def _search(px, py, pz, start, cells, rounding, outlines, room):
+    """Sums of all cells that lose something to a point in the cell of ``start``; how many they are."""
+    stamp = room.stamps[1]  # one that no facet has
+    room.stamps[1] += 1
+    size, at = join(start, 0, room)
+    while at < size:
+        cell = room.found[at]
+        for place in range(cells.starts[cell], cells.starts[cell + 1]):
+            facet = cells.facets[place]
+            if room.asked[facet] != stamp:
+                room.asked[facet] = stamp
+                size = share(facet, px, py, pz, cells, rounding, outlines, size, room)
+        at += 1
+    return size
 
 
 @inlined

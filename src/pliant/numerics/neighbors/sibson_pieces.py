@@ -1,7 +1,7 @@
-"""Kernel pieces for natural-neighbour coordinates: what one facet of a Voronoi cell gives to the cells on its sides.
+"""Kernel pieces for natural-neighbour coordinates: what a point takes from Voronoi cells, facet by facet.
 
-Volumes are sums of cones over facets, with the apex halfway between the point x and the site p, on the cutting plane:
-the cut itself never has to be closed. What a facet keeps serves the cells on both its sides.
+Each facet of every cell that loses something is clipped on its own, whatever meets at its corners: slower than along
+edges, and nothing is missed.
 """
 
 from __future__ import annotations
@@ -30,41 +30,40 @@ def share(facet, px, py, pz, cells, rounding, outlines, size, room):
     size
         How many cells there are.
     room
-        As in :class:`pliant.numerics.neighbors.natural_neighbors.Workspace`, as pointers. ``signed`` then says how
-        much nearer each corner is to the point than to the site.
+        As in :class:`pliant.numerics.neighbors.natural_neighbors.Workspace`, as pointers.
 
     Returns
     -------
-    size, touched
-        How many cells there are now, and whether the facet has something nearer to the point.
+    int
+        How many cells there are now.
     """
     own, other = cells.owners[facet], cells.others[facet]
     dx, dy, dz = px - cells.sites[3 * own], py - cells.sites[3 * own + 1], pz - cells.sites[3 * own + 2]
     area, crossings = _kept(facet, dx, dy, dz, cells, rounding, room.signed, room.ends)
     if area < 0.0:
-        return size, False
+        return size
     nx, ny, nz = cells.normals[3 * facet], cells.normals[3 * facet + 1], cells.normals[3 * facet + 2]
     offset = cells.offsets[facet]
     half = 0.5 * (nx * dx + ny * dy + nz * dz)
     for side in range(1 if other < 0 else 2):
         site = own if side == 0 else other
-        size = _join(site, size, room)
-        at = 8 * room.slots[site]
+        size, at = join(site, size, room)
         room.sums[at] += (offset - half if side == 0 else half) * area
         if crossings and outlines:
-            _outline(room.sums, at, dx, dy, dz, nx, ny, nz, 2.0 * offset * side, 1.0 - 2.0 * side, room.ends)
-    return size, True
+            outline(room.sums, at, dx, dy, dz, nx, ny, nz, 2.0 * offset * side, 1.0 - 2.0 * side, room.ends, 0)
+    return size
 
 
 @inlined
-def _join(site, size, room):
-    """Put a cell among those found; how many those are then."""
-    if room.slots[site] >= 0:
-        return size
+def join(site, size, room):
+    """Put a cell among those found; how many those are then, and where its sums start."""
+    at = room.slots[site]
+    if at >= 0:
+        return size, 8 * at
     room.slots[site], room.found[size] = size, site
     for k in range(8):
         room.sums[8 * size + k] = 0.0
-    return size + 1
+    return size + 1, 8 * size
 
 
 @inlined
@@ -124,16 +123,16 @@ def _kept(facet, dx, dy, dz, cells, rounding, signed, ends):
 
 
 @inlined
-def _outline(sums, at, dx, dy, dz, nx, ny, nz, apart, sign, ends):
+def outline(sums, at, dx, dy, dz, nx, ny, nz, apart, sign, ends, base):
     """Add an edge of the cut's outline to the sums of the cut's area, moment and outline.
 
-    The facet's normal is seen from its owner, ``d`` and ``ends`` are relative to it; the cell whose sums these are
-    has its site ``apart`` along the normal.
+    The facet's normal is seen from its owner, ``d`` and ``ends``, from ``base`` on, are relative to it; the cell whose
+    sums these are has its site ``apart`` along the normal.
     """
     sx, sy, sz = apart * nx, apart * ny, apart * nz
     dx, dy, dz = dx - sx, dy - sy, dz - sz
-    ex, ey, ez = ends[0] - sx, ends[1] - sy, ends[2] - sz
-    bx, by, bz = ends[3] - sx, ends[4] - sy, ends[5] - sz
+    ex, ey, ez = ends[base] - sx, ends[base + 1] - sy, ends[base + 2] - sz
+    bx, by, bz = ends[base + 3] - sx, ends[base + 4] - sy, ends[base + 5] - sz
     ax, ay, az = 0.5 * dx, 0.5 * dy, 0.5 * dz
     distance = np.sqrt(dx * dx + dy * dy + dz * dz)
     ox, oy, oz, wx, wy, wz = ex - ax, ey - ay, ez - az, bx - ax, by - ay, bz - az
