@@ -186,6 +186,53 @@ def test_a_straight_limb_turns_rigidly_with_its_skeleton():
     assert np.abs(bound.deform(goal) - rigid)[held].max() < 1e-9
 
 
+def angles_about_z(before, after):
+    """By how much each ring of sixteen has turned about z, in degrees, one after another."""
+    turned = (after[:, 0] + 1j * after[:, 1]) / (before[:, 0] + 1j * before[:, 1])
+    return np.degrees(np.unwrap(np.angle(turned.reshape(-1, 16).mean(axis=1))))
+
+
+@pytest.mark.parametrize("choice", [{}, {"finish": "none"}, {"finish": "rigid"}, {"turning": "links"}])
+@pytest.mark.parametrize("degrees", [90, -150])
+def test_a_limb_that_is_turned_about_itself_is_twisted_evenly(choice, degrees):
+    mesh = tube(60, 16)
+    height = mesh.points[:, 2]
+    roi, held = np.flatnonzero(height > 1.0), np.flatnonzero(height > 3.4)
+    bound = SkeletonEdit(roi, held, **choice).bind(mesh)
+    goal = bound.rest @ rotation([0, 0, np.radians(degrees)]).T
+    moved = bound.deform(goal)
+    assert np.abs(moved[held] - goal).max() < 1e-9  # the end goes along, all of it
+    assert np.array_equal(moved[height < 1.0], mesh.points[height < 1.0])  # and the other stays
+    rings = mesh.points[:960], moved[:960]
+    evenly = np.clip((rings[0][::16, 2] - 1.0) / 2.4, 0, 1) * degrees
+    assert np.abs(angles_about_z(*rings) - evenly).max() < 0.1 * abs(degrees)
+    if choice.get("finish") != "rigid":  # which lets the cells have their way
+        assert np.abs(np.hypot(*moved.T[:2]) - np.hypot(*mesh.points.T[:2])).max() < 1e-9
+        assert np.abs(moved[:, 2] - height).max() < 1e-9
+
+
+@pytest.mark.parametrize("finish", ["none", "smooth"])
+def test_a_handle_follows_any_turn_about_the_joint(finish):
+    mesh = tube(60, 16)
+    roi, held = np.flatnonzero(mesh.points[:, 2] > 1.0), np.flatnonzero(mesh.points[:, 2] > 3.4)
+    bound = SkeletonEdit(roi, held, finish=finish).bind(mesh)
+    joint = mesh.points[bound.constraints.belt].mean(axis=0)
+    for vector in ([0.9, 0.2, 0.0], [0.4, -0.7, 1.1], [0.0, 1.2, -2.0]):
+        goal = (bound.rest - joint) @ rotation(vector).T + joint
+        assert np.abs(bound.deform(goal)[held] - goal).max() < 1e-9
+
+
+def test_what_is_only_carried_off_is_not_twisted():
+    mesh = tube(60, 16, bumps=0.2)
+    roi, held = np.flatnonzero(mesh.points[:, 2] > 1.0), np.flatnonzero(mesh.points[:, 2] > 3.4)
+    bound = SkeletonEdit(roi, held).bind(mesh)
+    shifted = bound.deform(bound.rest + [0.9, 0.4, -0.3])
+    scaled = bound.rest.mean(axis=0) + 1.7 * (bound.rest - bound.rest.mean(axis=0)) + [0.9, 0.4, -0.3]
+    assert np.abs(bound.deform(scaled) - shifted).max() < 1e-9
+    single = SkeletonEdit(roi, held[-1:]).bind(mesh)  # one vertex tells of no turn
+    assert np.isfinite(single.deform(single.rest + [0.5, 0, 0])).all()
+
+
 def border_jump(mesh, points, belt):
     """The largest change of the angle between two faces, in degrees, among edges that touch a fixed edge."""
     corners = points[mesh.triangles], mesh.points[mesh.triangles]

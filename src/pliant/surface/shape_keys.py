@@ -8,7 +8,6 @@ from typing import Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.sparse.linalg import LinearOperator
 
 from pliant.deformer import Controls, Deformer, LinearBinding, Target, checked_controls, checked_out, require_finite
 from pliant.errors import InvalidDeformer, InvalidTarget
@@ -107,14 +106,3 @@ class ShapeKeysBinding(LinearBinding):
     def vjp(self, controls: ArrayLike | None, d_points: ArrayLike) -> Controls:
         """(k,) the transpose of :meth:`jvp`."""
         return np.asarray(np.tensordot(self._moves, checked_controls(d_points, self._points.shape), axes=2))
-
-    @property
-    def weights(self) -> LinearOperator:
-        """(3n, k) the points, flattened, from the weights."""
-        matrix = self._moves.reshape(len(self._moves), -1).T
-        return LinearOperator(
-            matrix.shape,
-            dtype=np.float64,
-            matvec=lambda change: matrix @ change,
-            rmatvec=lambda values: matrix.T @ values,
-        )

@@ -13,6 +13,7 @@ from pliant.errors import NotDifferentiable
 from pliant.iterative import IterativeBinding, Solution
 from pliant.mesh import Points, PolygonMesh
 from pliant.numerics.meshes.laplacians import laplacian, masses
+from pliant.numerics.rigid.twists import twist_about
 from pliant.numerics.sparse.sparse_cholesky import Cholesky
 from pliant.surface.cells import Cells
 from pliant.surface.constraints import Constraints
@@ -24,7 +25,7 @@ Floats = NDArray[np.float64]
 
 
 class SmoothDisplacements:
-    """Displacements, smoothed inside a region over a length: (M + l⁴ L M⁻¹ L) u = M u₀, the handle's being given."""
+    """Displacements, smoothed inside a region over a length: (M + l⁴ L M⁻¹ L) u = M u₀, given at the rim."""
 
     def __init__(self, mesh: PolygonMesh, weights: csr_array, free: NDArray[np.int64], length: float) -> None:
         mass, stiffness = masses(mesh.points, mesh.triangles), laplacian(weights)
@@ -68,33 +69,42 @@ class SkeletonBinding(SurfaceBinding):
         self.skeleton, self._motion, self._moving, self._smooth = skeleton, motion, moving, smooth
 
     def _edit(self, goal: Controls, points: Points) -> None:
-        points += self._displacements(self._shift(goal))
+        points += self._displacements(self._pose(goal))
 
-    def _shift(self, goal: Controls) -> NDArray[Any]:
-        return np.asarray((goal - self._rest).mean(axis=0))
+    def _pose(self, goal: Controls) -> Floats:
+        """(4,) how far the handle's mean has moved, and by what angle the handle has turned about the limb."""
+        shift = (goal - self._rest).mean(axis=0)
+        return np.append(shift, twist_about(self._rest, goal, self._motion.twist.axis)[0])
 
-    def _displacements(self, shift: NDArray[Any]) -> NDArray[Any]:
-        """(n, 3) for a shift of the handle's mean, real or complex."""
-        result = np.zeros(self._points.shape, shift.dtype)
-        result[self._moving] = self._motion.moved(shift) - self._points[self._moving]
+    def _displacements(self, pose: NDArray[Any]) -> NDArray[Any]:
+        """(n, 3) for a pose of the handle, real or complex."""
+        result = np.zeros(self._points.shape, pose.dtype)
+        positions, twisted = self._motion.moved(pose[:3], pose[3])
+        result[self._moving] = positions - self._points[self._moving]
         if self._smooth is not None:
             for part in (result.real, result.imag) if np.iscomplexobj(result) else (result,):
                 self._smooth(part)
+        result[self._moving] += twisted  # smooth already, and smoothing would make the limb thinner
         return result
 
     def _derivative(self, controls: ArrayLike | None) -> Floats:
-        """(3, n, 3) by the handle's mean."""
-        shift, step = self._shift(self._checked(controls)), 1e-30
-        return np.stack([self._displacements(shift + 1j * step * axis).imag / step for axis in np.eye(3)])
+        """(4, n, 3) by the handle's pose."""
+        pose, step = self._pose(self._checked(controls)), 1e-30
+        return np.stack([self._displacements(pose + 1j * step * axis).imag / step for axis in np.eye(4)])
+
+    def _twisting(self, controls: ArrayLike | None) -> Floats:
+        """(h, 3) the derivative of the handle's twist by its controls."""
+        return twist_about(self._rest, self._checked(controls), self._motion.twist.axis)[1]
 
     def jvp(self, controls: ArrayLike | None, d_controls: ArrayLike) -> Points:
-        mean = checked_controls(d_controls, self._rest.shape).mean(axis=0)
-        return np.asarray(np.einsum("c,cni->ni", mean, self._derivative(controls)))
+        moved = checked_controls(d_controls, self._rest.shape)
+        pose = np.append(moved.mean(axis=0), np.sum(self._twisting(controls) * moved))
+        return np.asarray(np.einsum("c,cni->ni", pose, self._derivative(controls)))
 
     def vjp(self, controls: ArrayLike | None, d_points: ArrayLike) -> Controls:
         gradient = checked_controls(d_points, self._points.shape)
-        mean = np.einsum("cni,ni->c", self._derivative(controls), gradient)
-        return np.tile(mean / len(self._rest), (len(self._rest), 1))
+        pose = np.einsum("cni,ni->c", self._derivative(controls), gradient)
+        return np.asarray(pose[:3] / len(self._rest) + pose[3] * self._twisting(controls))
 
 
 class RigidSkeletonBinding(SkeletonBinding, IterativeBinding):
@@ -126,9 +136,9 @@ class RigidSkeletonBinding(SkeletonBinding, IterativeBinding):
         self, controls: ArrayLike | None = None, start: Points | None = None, *, iterations: int | None = None
     ) -> Solution:
         """As :meth:`deform`, with an account; the skeleton is always the guess, whatever ``start`` is."""
-        shift = self._shift(self._checked(controls))
-        points = self._points + self._displacements(shift)
-        if not shift.any():
+        pose = self._pose(self._checked(controls))
+        points = self._points + self._displacements(pose)
+        if not pose.any():
             return Solution(self._points.copy(), "converged", np.zeros(1))
         rotations = self._cells.identities()
         energies = [self._cells.turn(points, rotations)]

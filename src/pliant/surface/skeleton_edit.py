@@ -18,6 +18,7 @@ from pliant.surface.cells import Cells
 from pliant.surface.constraints import Constraints, constrain
 from pliant.surface.contour_skeletons import ContourSkeleton, known_skeleton
 from pliant.surface.editing import SurfaceDeformer
+from pliant.surface.limb_twist import LimbTwist
 from pliant.surface.skeleton_binding import RigidSkeletonBinding, SkeletonBinding, SmoothDisplacements
 from pliant.surface.skeleton_motion import Band, SkeletonMotion, parents_of
 
@@ -32,6 +33,10 @@ _CHOICES = {"falloff": ("linear", "quadratic"), "turning": ("axis", "links"), "f
 @dataclass(frozen=True, eq=False)
 class SkeletonEdit(SurfaceDeformer):
     """Edit a limb by its contour-mean skeleton: the mean of the handle goes where the mean of its goal is.
+
+    About the limb's direction, from the region's fixed edge to the handle, the handle turns as the rotation that fits
+    its goal best does, and the region is twisted by parts of that angle. What else the goal turns by is not seen: the
+    limb swings as the mean says.
 
     Parameters
     ----------
@@ -83,14 +88,15 @@ class SkeletonEdit(SurfaceDeformer):
         skeleton = known_skeleton(mesh, self.contours, self.scalar, self.eigenvectors)
         along = _along(mesh, constraints)
         moving = np.flatnonzero(_inside(constraints, len(along)) & np.isfinite(along) & (skeleton.groups >= 0))
-        motion = self._motion(mesh, skeleton, constraints, moving, along)
+        way = float(along[constraints.handle].mean())
+        smooth = None
+        if self.finish == "smooth":
+            smooth = SmoothDisplacements(mesh, weights, constraints.free, _SMOOTHED * way)
+        motion = self._motion(mesh, skeleton, constraints, moving, along / way, smooth)
         bound = mesh.points, constraints, self.goal, skeleton, motion, moving
         if self.finish == "rigid":
             return RigidSkeletonBinding(*bound, Cells(mesh.points, weights, constraints.free), self.iterations)
-        if self.finish == "none":
-            return SkeletonBinding(*bound)
-        way = float(along[constraints.handle].mean())
-        return SkeletonBinding(*bound, SmoothDisplacements(mesh, weights, constraints.free, _SMOOTHED * way))
+        return SkeletonBinding(*bound, smooth)
 
     def _motion(
         self,
@@ -98,16 +104,22 @@ class SkeletonEdit(SurfaceDeformer):
         skeleton: ContourSkeleton,
         constraints: Constraints,
         moving: NDArray[np.int64],
-        along: Floats,
+        t: Floats,
+        smooth: SmoothDisplacements | None,
     ) -> SkeletonMotion:
         used, groups = np.unique(skeleton.groups[moving], return_inverse=True)
         groups = groups.reshape(-1)
-        t = along / float(along[constraints.handle].mean())
         part = np.clip(np.bincount(groups, weights=t[moving]) / np.bincount(groups), 0.0, 1.0)
         part[groups[np.isin(moving, constraints.handle)]] = 1.0
         place = np.full(len(skeleton.points), -1)
         place[used] = np.arange(len(used))
         links = place[skeleton.links]
+        edge, handle = mesh.points[constraints.belt].mean(axis=0), mesh.points[constraints.handle].mean(axis=0)
+        centers = np.tile(edge, (len(mesh.points), 1))
+        centers[moving] = np.where((part >= 1)[:, None], handle, skeleton.points[used])[groups]
+        if smooth is not None:
+            smooth(centers)
+        spin = np.clip(t[moving] / max(float(t[constraints.handle].min()), 1e-9), 0.0, 1.0)
         profile = Band() if self.profile is None else self.profile
         return SkeletonMotion(
             details=mesh.points[moving] - skeleton.points[used][groups],
@@ -116,9 +128,10 @@ class SkeletonEdit(SurfaceDeformer):
             follow=part**2 if self.falloff == "quadratic" else part,
             turn=np.asarray(profile(np.clip(t[moving], 0.0, 1.0)), np.float64),
             parents=parents_of(links[(links >= 0).all(axis=1)], part),
-            edge=mesh.points[constraints.belt].mean(axis=0),
-            handle=mesh.points[constraints.handle].mean(axis=0),
+            edge=edge,
+            handle=handle,
             by_links=self.turning == "links",
+            twist=LimbTwist.along(mesh.points[moving], centers[moving], spin, edge, handle),
         )
 
 

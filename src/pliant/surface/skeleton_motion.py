@@ -5,6 +5,9 @@ fixed edge to 1 at the handle; the details d = v - s are turned, v' = s' + q d q
 (v_h - a) × (v_h' - a) with a on the fixed edge, by an angle that grows from 0 across a band beside the edge. Or each
 group turns as the links of the skeleton around it do.
 
+A skeleton's points do not see a limb turn about itself. That angle is given beside the shift, see :class:`LimbTwist`:
+vertices are twisted first, and swing then.
+
 All is written for complex numbers too, so that a complex step gives exact derivatives.
 """
 
@@ -18,6 +21,7 @@ from numpy.typing import NDArray
 
 from pliant.mesh import Points
 from pliant.numerics.rigid.rotations import rotations_of, turning_vectors
+from pliant.surface.limb_twist import LimbTwist
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -45,6 +49,8 @@ class SkeletonMotion:
         (3,) the means of the fixed edge and of the handle.
     by_links
         Whether details turn with the skeleton's links.
+    twist
+        How the limb is twisted about itself.
     """
 
     details: Points
@@ -56,9 +62,23 @@ class SkeletonMotion:
     edge: Points
     handle: Points
     by_links: bool
+    twist: LimbTwist
 
-    def moved(self, shift: NDArray[Any]) -> NDArray[Any]:
-        """(m, 3) where the vertices go when the handle's mean moves by (3,), real or complex."""
+    def moved(self, shift: NDArray[Any], angle: Any = 0.0) -> tuple[NDArray[Any], NDArray[Any]]:
+        """Where the vertices go, and what the twist adds to that.
+
+        Parameters
+        ----------
+        shift
+            (3,) how far the handle's mean moves, real or complex.
+        angle
+            By how much the handle turns about the limb, likewise.
+
+        Returns
+        -------
+        tuple
+            Both (m, 3): positions, and displacements from them.
+        """
         full = turning_vectors((self.handle - self.edge)[None], (self.handle + shift - self.edge)[None])
         carried = self.points + self.follow[:, None] * shift
         beyond = self.follow >= 1  # the handle, and what lies behind it, moves as a rigid body
@@ -68,7 +88,8 @@ class SkeletonMotion:
         if self.by_links:
             vectors = np.where(beyond[:, None], vectors, self._link_turns(carried))
         rotations = rotations_of(self.turn[:, None] * vectors[self.groups])
-        return np.asarray(carried[self.groups] + np.einsum("mij,mj->mi", rotations, self.details))
+        positions = carried[self.groups] + np.einsum("mij,mj->mi", rotations, self.details)
+        return np.asarray(positions), np.einsum("mij,mj->mi", rotations, self.twist.displacements(angle))
 
     def _link_turns(self, carried: NDArray[Any]) -> NDArray[Any]:
         """(g, 3) how the links to the group before, and after, each group turn, on average."""
