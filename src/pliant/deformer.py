@@ -188,9 +188,14 @@ class LinearBinding(Binding):
     """A binding whose points are linear in the controls: x' = b + W (c - c_rest), with b = deform(rest)."""
 
     @property
-    @abstractmethod
     def weights(self) -> LinearOperator:
         """W as an operator: (n, m) for m control points, each coordinate alike; (3n, p) for p coefficients."""
+        return LinearOperator(
+            (self.points.size, self.rest.size),
+            dtype=np.float64,
+            matvec=lambda change: self.jvp(None, np.reshape(change, self.rest.shape)).reshape(-1),
+            rmatvec=lambda gradient: self.vjp(None, np.reshape(gradient, self.points.shape)).reshape(-1),
+        )
 
 
 class Drag:

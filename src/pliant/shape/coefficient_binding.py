@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.sparse.linalg import LinearOperator
 
 from pliant.deformer import Controls, LinearBinding, checked_controls, checked_out, require_finite
 from pliant.mesh import Points
-from pliant.shape.basis import Basis, Floats
+from pliant.shape.basis import Basis
 
 
 class CoefficientBinding(LinearBinding):
@@ -44,16 +43,3 @@ class CoefficientBinding(LinearBinding):
 
     def vjp(self, controls: ArrayLike | None, d_points: ArrayLike) -> Controls:
         return self._basis.transpose(checked_controls(d_points, self._points.shape))
-
-    @property
-    def weights(self) -> LinearOperator:
-        """(3 n, k) W."""
-        shape = (3 * len(self._points), self._basis.count)
-
-        def forward(column: Floats) -> Floats:
-            return self.jvp(None, np.asarray(column).reshape(-1)).reshape(-1)
-
-        def backward(column: Floats) -> Floats:
-            return self.vjp(None, np.asarray(column).reshape(-1, 3))
-
-        return LinearOperator(shape, forward, backward, dtype=np.float64)

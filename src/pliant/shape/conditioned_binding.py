@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 from numpy.typing import ArrayLike
-from scipy.sparse.linalg import LinearOperator
 
 from pliant.deformer import Controls, LinearBinding, checked_controls, checked_out, require_finite
 from pliant.mesh import Points
@@ -63,19 +62,6 @@ class ConditionedBinding(LinearBinding):
             return gradient
         pulled = self._correction.gain_transposed(gradient)
         return np.concatenate([self._correction.transposed(gradient), pulled.reshape(-1)])
-
-    @property
-    def weights(self) -> LinearOperator:
-        """(3 n, k + 3 m) W."""
-        shape = (3 * len(self._points), len(self._controls))
-
-        def forward(column: Floats) -> Floats:
-            return self.jvp(None, np.asarray(column).reshape(-1)).reshape(-1)
-
-        def backward(column: Floats) -> Floats:
-            return self.vjp(None, np.asarray(column).reshape(-1, 3))
-
-        return LinearOperator(shape, forward, backward, dtype=np.float64)
 
     def _corrected(self, away: Controls) -> Floats:
         """(k,) coefficients, from how far the controls are away from rest."""

@@ -7,7 +7,6 @@ from typing import Any, Literal, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.sparse.linalg import LinearOperator
 
 from pliant.deformer import (
     Controls,
@@ -21,6 +20,7 @@ from pliant.deformer import (
 from pliant.errors import InvalidDeformer
 from pliant.mesh import Points, as_points
 from pliant.numerics.ragged import frozen
+from pliant.space.axes import unit_axis
 
 Matrix = NDArray[np.float64]
 Axis = Literal["x", "y", "z"] | ArrayLike
@@ -103,7 +103,7 @@ class Affine(SpaceDeformer):
         InvalidDeformer
             The axis is none, or a number is not finite.
         """
-        x, y, z = _unit(axis)
+        x, y, z = unit_axis(axis)
         cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
         linear = np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross  # Rodrigues' formula
         return cls._about(linear, origin)
@@ -224,16 +224,6 @@ class AffineBinding(LinearBinding):
         gradient = checked_controls(d_points, self._points.shape)
         return np.column_stack([gradient.T @ self._points, gradient.sum(axis=0)]).reshape(-1)
 
-    @property
-    def weights(self) -> LinearOperator:
-        """(3n, 12) the points, flattened, from the numbers."""
-        return LinearOperator(
-            (self._points.size, 12),
-            dtype=np.float64,
-            matvec=lambda change: self.jvp(None, np.reshape(change, 12)).reshape(-1),
-            rmatvec=lambda gradient: self.vjp(None, np.reshape(gradient, self._points.shape)),
-        )
-
 
 def _array(name: str, values: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.float64]:
     try:
@@ -243,14 +233,3 @@ def _array(name: str, values: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.f
     if array.shape != shape:
         raise InvalidDeformer(f"{name} has shape {array.shape}; {shape} is needed")
     return array
-
-
-def _unit(axis: Axis) -> Points:
-    if isinstance(axis, str) and axis not in ("x", "y", "z"):
-        raise InvalidDeformer(f"{axis!r} is no axis: 'x', 'y', 'z' or three numbers are needed")
-    vector = np.eye(3)["xyz".index(axis)] if isinstance(axis, str) else _array("axis", axis, (3,))
-    length = float(np.linalg.norm(vector))
-    if not 0 < length < np.inf:
-        raise InvalidDeformer(f"the axis {vector.tolist()} has no direction: pass numbers that are not all zero")
-    unit: Points = vector / length
-    return unit

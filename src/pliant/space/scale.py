@@ -9,7 +9,6 @@ from typing import Any, ClassVar, Self
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
-from scipy.sparse.linalg import LinearOperator
 
 from pliant.deformer import (
     Controls,
@@ -143,13 +142,3 @@ class ScaleBinding(LinearBinding):
         gradient = checked_controls(d_points, self._points.shape)
         moments = gradient.T @ (self._points - self._origin)
         return np.asarray(np.einsum("ik,ij,jk->k", self._axes, moments, self._axes))
-
-    @property
-    def weights(self) -> LinearOperator:
-        """(3n, 3) the points, flattened, from the factors."""
-        return LinearOperator(
-            (self._points.size, 3),
-            dtype=np.float64,
-            matvec=lambda change: self.jvp(None, np.reshape(change, 3)).reshape(-1),
-            rmatvec=lambda gradient: self.vjp(None, np.reshape(gradient, self._points.shape)),
-        )
