@@ -1,9 +1,9 @@
 """A kernel for natural-neighbour coordinates, Sibson's (1980) and Laplace's, with their gradients.
 
 If a point x were a site too, its cell would take from the cell of each old site p what lies nearer to x than to p:
-one half-space cut of a cell that is known beforehand. The search goes along the cells' edges, beginning in the cell
-that x lies in. Should it miss something, the coordinates do not reproduce x, and all facets of all cells that lose
-something are searched.
+one half-space cut of a cell that is known beforehand. The search goes along the cells' edges, beginning in a cell near
+x. Should it miss something, the coordinates do not reproduce x; then it begins in the cell that x lies in, and at last
+all facets of all cells that lose something are searched.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ from pliant.numerics.neighbors.cell_arrays import CellArrays
 from pliant.numerics.neighbors.natural_neighbors import Workspace
 from pliant.numerics.neighbors.sibson_edges import follow
 from pliant.numerics.neighbors.sibson_pieces import join, share
-from pliant.numerics.neighbors.sibson_rows import LAPLACE, reproduced, weigh, write
+from pliant.numerics.neighbors.sibson_rows import LAPLACE, only, reproduced, weigh, write
 from pliant.numerics.neighbors.skeleton import Skeleton
 
 
@@ -59,25 +59,22 @@ def coordinates(
     for row in range(len(order)):
         n = 3 * order[row]
         px, py, pz = points[n], points[n + 1], points[n + 2]
-        start = _walk(px, py, pz, _seed(px, py, pz, seeds), cells)
         if filled + cells.number > len(columns):
             return row
-        if _distance(px, py, pz, cells.sites, start) <= on_site:
-            if start < limit:
-                columns[filled], values[filled] = start, 1.0
-                if differentiate:
-                    slopes[3 * filled] = slopes[3 * filled + 1] = slopes[3 * filled + 2] = 0.0
-                filled += 1
-            row_ends[row] = filled
-            continue
-        for attempt in range(2):
-            if attempt == 0:
+        start, size, total = _seed(px, py, pz, seeds), 0, 0.0
+        for attempt in range(3):  # from a near cell; from the point's own; facet by facet
+            if attempt < 2:
                 size = follow(px, py, pz, start, cells, skeleton, rounding, outlines, room)
             else:
                 size = _search(px, py, pz, start, cells, rounding, outlines, room)
             total = weigh(px, py, pz, size, room, cells.sites, kind, outlines)
-            if reproduced(px, py, pz, size, room, total, cells.sites):
+            if reproduced(px, py, pz, size, room, total, cells.sites, on_site):
                 break
+            if attempt == 0:
+                start = _walk(px, py, pz, start, cells)
+                if _distance(px, py, pz, cells.sites, start) <= on_site:
+                    size, total = only(start, room)
+                    break
         filled = write(size, room, total, limit, differentiate, filled, columns, values, slopes)
         row_ends[row] = filled
     return len(order)

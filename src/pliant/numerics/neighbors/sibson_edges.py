@@ -14,12 +14,12 @@ from pliant.numerics.neighbors.sibson_pieces import join, outline
 
 @inlined
 def follow(px, py, pz, start, cells, skeleton, rounding, outlines, room):
-    """Sums of all cells that lose something to a point in the cell of ``start``; how many they are.
+    """Sums of all cells that lose something to a point; how many they are, or 0 where the first says nothing.
 
     Parameters
     ----------
     px, py, pz, start
-        The point, and the site whose cell it lies in.
+        The point, and the site in whose cell to begin.
     cells, skeleton
         :class:`pliant.numerics.neighbors.cell_arrays.CellArrays` and
         :class:`pliant.numerics.neighbors.skeleton.Skeleton`, as pointers.

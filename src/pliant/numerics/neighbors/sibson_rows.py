@@ -54,15 +54,24 @@ def weigh(px, py, pz, size, room, sites, kind, outlines):
 
 
 @inlined
-def reproduced(px, py, pz, size, room, total, sites):
-    """Whether the weights' mean of the sites is the point: they are all there."""
-    x, y, z, spread = 0.0, 0.0, 0.0, 0.0
+def reproduced(px, py, pz, size, room, total, sites, on_site):
+    """Whether the weights' mean of the sites is the point, which is not itself a site: they are all there."""
+    x, y, z, spread, least = 0.0, 0.0, 0.0, 0.0, np.inf
     for at in range(size):
         site, weight = 3 * room.found[at], room.sums[8 * at]
         dx, dy, dz = sites[site] - px, sites[site + 1] - py, sites[site + 2] - pz
         x, y, z = x + weight * dx, y + weight * dy, z + weight * dz
-        spread += weight * (abs(dx) + abs(dy) + abs(dz))
-    return total > 0.0 and abs(x) + abs(y) + abs(z) <= 1e-11 * spread
+        distance = abs(dx) + abs(dy) + abs(dz)
+        spread, least = spread + weight * distance, min(least, distance)
+    return total > 0.0 and least > 2.0 * on_site and abs(x) + abs(y) + abs(z) <= 1e-11 * spread
+
+
+@inlined
+def only(site, room):
+    """Weights of a point that is a site: how many they are, and their sum."""
+    room.found[0], room.sums[0] = site, 1.0
+    room.sums[1] = room.sums[2] = room.sums[3] = 0.0
+    return 1, 1.0
 
 
 @inlined
