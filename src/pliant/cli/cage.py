@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from pliant.cli import options as opt
+from pliant.cli.meshes import read_mesh, write_mesh
 from pliant.cli.session import Session
 
 if TYPE_CHECKING:
@@ -117,10 +118,9 @@ def cage(
         from pliant.cages.building import build_cage
         from pliant.cages.checking import check_cage
         from pliant.cages.own import cage_from_mesh
-        from pliant.io.meshes import read, write
+        from pliant.io.meshes import read
 
-        inner = read(mesh)
-        session.say(f"read {mesh}: {len(inner.points):,} points, {len(inner.faces):,} faces")
+        inner = read_mesh(session, mesh)
         start = perf_counter()
         with session.patience():
             if own is not None:
@@ -131,12 +131,11 @@ def cage(
                 found = build_cage(inner, vertices, margin, method=method.value.replace("-", "_"))  # type: ignore[arg-type]
             report = check_cage(found, inner)
         seconds = perf_counter() - start
-        write(found, output)
         ratio = "" if report.volume_ratio is None else f", {report.volume_ratio:.3g} times the mesh's volume"
         session.say(f"{report.vertices} vertices, {report.faces} faces{ratio}, in {seconds:.1f} s")
         for failure in report.failures:
             session.warn(f"the cage fails: {failure}")
-        session.say(f"wrote {output}")
+        write_mesh(session, found, output)
         session.result(
             input=mesh,
             output=output,

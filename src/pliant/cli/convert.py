@@ -54,10 +54,7 @@ def convert(
             if inverse or lattice or around:
                 raise typer.BadParameter("--inverse, --lattice and --around are for transforms; this is a mesh")
             report = _mesh(source, output, strict=strict)
-        for loss in report.losses:
-            session.warn(f"{output} does not hold: {loss}")
-        for note in report.notes:
-            session.say(f"note: {note}")
+        session.tell_losses(report)
         session.say(f"wrote {output} ({report.format})")
         session.result(input=source, output=output, format=report.format, losses=report.losses, notes=report.notes)
 

@@ -12,6 +12,7 @@ from pliant.cli import options as opt
 from pliant.cli.cage import CageOption, Coordinates, CoordinatesOption, PosedOption, cage_choice
 from pliant.cli.choice import Choice
 from pliant.cli.deformer_options import STEPS
+from pliant.cli.meshes import read_mesh, write_mesh
 from pliant.cli.part import ToleranceOption, deform_part, is_part
 from pliant.cli.pieces import deform_in_pieces
 from pliant.cli.session import Session
@@ -84,22 +85,14 @@ def deform_file(session: Session, path: Path, output: Path, choice: Choice, *, s
     """Read, deform, write, and report; the deformed mesh is returned."""
     import numpy as np
 
-    from pliant.io.meshes import read, write
-
-    mesh = read(path)
-    session.say(f"read {path}: {len(mesh.points):,} points, {len(mesh.faces):,} faces")
+    mesh = read_mesh(session, path)
     deformer = choice.required(mesh)
     with session.patience():
         moved = deformer(mesh)
     length = np.linalg.norm(moved.points - mesh.points, axis=1)
     largest, mean = float(length.max(initial=0.0)), float(length.mean()) if len(length) else 0.0
     session.say(f"deformed: points moved by {mean:.4g} on average, {largest:.4g} at most")
-    report = write(moved, output, strict=strict)
-    for loss in report.losses:
-        session.warn(f"{output} does not hold: {loss}")
-    for note in report.notes:
-        session.say(f"note: {note}")
-    session.say(f"wrote {output}")
+    report = write_mesh(session, moved, output, strict=strict)
     session.result(
         input=path,
         output=output,

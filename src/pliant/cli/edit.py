@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from pliant.cli import options as opt
+from pliant.cli.meshes import read_mesh, write_mesh
 from pliant.cli.region import FORMS, vertices
 from pliant.cli.session import Session
-from pliant.cli.written import write_mesh
 
 if TYPE_CHECKING:
     import numpy as np
@@ -46,11 +46,9 @@ def edit(
     with Session(json=json, quiet=quiet) as session:
         import numpy as np
 
-        from pliant.io.meshes import read
         from pliant.iterative import IterativeBinding
 
-        shape, offset = read(mesh), np.array(opt.three_numbers(move, "--move"))
-        session.say(f"read {mesh}: {len(shape.points):,} points, {len(shape.faces):,} faces")
+        shape, offset = read_mesh(session, mesh), np.array(opt.three_numbers(move, "--move"))
         region, held = vertices(roi, shape, "--roi"), vertices(handle, shape, "--handle")
         facts: dict[str, object] = {}
         deformer = _deformer(method, region, held)

@@ -86,8 +86,7 @@ def face(
         if filled:
             result = result.filled()
         report = result.write(output, strict=strict)
-        for loss in report.losses:
-            session.warn(f"{output} does not hold: {loss}")
+        session.tell_losses(report)
         session.say(f"wrote {output}: {len(result.mesh.points):,} points, {len(result.mesh.faces):,} faces")
         session.say("its unit is the centimetre, assuming a face 14 cm wide: a photograph does not tell sizes")
         session.result(points=len(result.mesh.points), losses=report.losses, notes=report.notes)

@@ -210,8 +210,7 @@ def _write(session: Session, model: ShapeModel, output: Path) -> None:
 
 
 def _tell(session: Session, report: LossReport) -> None:
-    for loss in report.losses:
-        session.warn(f"{report.path} does not hold: {loss}")
+    session.tell_losses(report)
     session.say(f"wrote {report.path} ({report.format})")
 
 

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
+from pliant.cli.meshes import write_mesh
 from pliant.cli.session import Session
-from pliant.cli.written import write_mesh
 
 if TYPE_CHECKING:
     from pliant.cad import Part
@@ -46,15 +46,15 @@ def deform_part(
     session.say(f"read {path}: {part}")
     with session.patience():
         moved = part.deformed(chosen(part.mesh()), tolerance=tolerance)
-    losses: tuple[str, ...] = ()
     if is_part(output):
-        losses = write(moved, output, strict=strict).losses
-        for loss in losses:
-            session.warn(f"{output} does not hold: {loss}")
+        report = write(moved, output, strict=strict)
+        session.tell_losses(report)
         session.say(f"wrote {output}: {moved}")
     else:
-        losses = write_mesh(session, moved.mesh(), output, strict=strict).losses
-    session.result(input=path, output=output, volume=moved.volume, gap=moved.gap, valid=moved.valid, losses=losses)
+        report = write_mesh(session, moved.mesh(), output, strict=strict)
+    session.result(
+        input=path, output=output, volume=moved.volume, gap=moved.gap, valid=moved.valid, losses=report.losses
+    )
 
 
 def facts_of_part(part: Part) -> dict[str, Any]:

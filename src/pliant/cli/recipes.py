@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from pliant.cli import options as opt
+from pliant.cli.meshes import read_mesh, write_mesh
 from pliant.cli.part import ToleranceOption, deform_part, is_part
 from pliant.cli.pieces import deform_in_pieces
 from pliant.cli.session import Session
-from pliant.cli.written import write_mesh
 
 if TYPE_CHECKING:
     from pliant.mesh import PolygonMesh
@@ -73,10 +73,7 @@ def apply(
             return
         import numpy as np
 
-        from pliant.io.meshes import read
-
-        shape = read(mesh)
-        session.say(f"read {mesh}: {len(shape.points):,} points, {len(shape.faces):,} faces")
+        shape = read_mesh(session, mesh)
         with session.patience():
             if time is None:
                 moved = choice(shape)(shape)
@@ -118,11 +115,9 @@ def animate(
     with Session(json=json, quiet=quiet) as session:
         from dataclasses import replace
 
-        from pliant.io.meshes import read
         from pliant.scene.animation.formats import export_clip, read_sequence
 
-        shape = read(mesh)
-        session.say(f"read {mesh}: {len(shape.points):,} points, {len(shape.faces):,} faces")
+        shape = read_mesh(session, mesh)
         clip = _clip(recipe, shape, intensity, up, duration, fps)
         if motion is not None:
             found = read_sequence(motion, mesh=shape, fps=clip.fps)
@@ -130,10 +125,7 @@ def animate(
             clip = replace(clip, motion=found, amplify=amplify, duration=lasting)
         with session.patience():
             report = export_clip(clip, output, **_film_options(output, turns, size, up))
-        for loss in report.losses:
-            session.warn(f"{output} does not hold: {loss}")
-        for note in report.notes:
-            session.say(f"note: {note}")
+        session.tell_losses(report)
         session.say(f"wrote {output}: {len(clip.times)} frames")
         session.result(
             input=mesh, output=output, frames=len(clip.times), seconds=clip.period, losses=report.losses,

@@ -10,6 +10,7 @@ import typer
 from pliant.cli import options as opt
 from pliant.cli.choice import Choice, half_turn
 from pliant.cli.deformer_options import STEPS
+from pliant.cli.meshes import read_mesh
 from pliant.cli.session import Session
 
 
@@ -46,11 +47,9 @@ def render(
     steps = context.meta[STEPS]
     choice = Choice(ffd, placement, variant, edge, origin, lattice, margin, tuple(move or ()), inverse, steps=steps)
     with Session(json=json, quiet=quiet) as session:
-        from pliant.io.meshes import read
         from pliant.rendering.pictures import render as draw
 
-        shape = read(mesh)
-        session.say(f"read {mesh}: {len(shape.points):,} points, {len(shape.faces):,} faces")
+        shape = read_mesh(session, mesh)
         if mesh_space is opt.MeshSpace.lps:
             shape = half_turn()(shape)
         deformer = choice.deformer(shape)

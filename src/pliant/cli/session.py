@@ -11,12 +11,15 @@ from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from threading import Timer
 from types import TracebackType
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import typer
 
 from pliant.cli.exits import exit_code
 from pliant.errors import PliantError, PliantWarning
+
+if TYPE_CHECKING:
+    from pliant.io.report import LossReport
 
 
 class Session:
@@ -61,6 +64,13 @@ class Session:
         """Something that worked, but not as the user may think."""
         self._warnings.append(line)
         self._stderr.print(f"warning: {line}", style="yellow", markup=False)
+
+    def tell_losses(self, report: LossReport) -> None:
+        """Warn of what a written file does not hold, and pass on what its writer notes."""
+        for loss in report.losses:
+            self.warn(f"{report.path} does not hold: {loss}")
+        for note in report.notes:
+            self.say(f"note: {note}")
 
     def result(self, **values: Any) -> None:
         """Values of the result, by name."""

@@ -8,8 +8,8 @@ from typing import Annotated
 import typer
 
 from pliant.cli import options as opt
+from pliant.cli.meshes import read_mesh, write_mesh
 from pliant.cli.session import Session
-from pliant.cli.written import write_mesh
 
 
 def skeleton(
@@ -25,11 +25,9 @@ def skeleton(
 ) -> None:
     """Write the skeleton of a mesh: the means of the loops of its isolines."""
     with Session(json=json, quiet=quiet) as session:
-        from pliant.io.meshes import read
         from pliant.surface.contour_skeletons import contour_skeleton
 
-        shape = read(mesh)
-        session.say(f"read {mesh}: {len(shape.points):,} points, {len(shape.faces):,} faces")
+        shape = read_mesh(session, mesh)
         with session.patience():
             found = contour_skeleton(shape, contours, scalar, eigenvectors=eigenvectors)
         session.say(f"found {len(found.points)} points and {len(found.links)} links")

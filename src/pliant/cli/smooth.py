@@ -9,9 +9,9 @@ from typing import Annotated
 import typer
 
 from pliant.cli import options as opt
+from pliant.cli.meshes import read_mesh, write_mesh
 from pliant.cli.region import FORMS, vertices
 from pliant.cli.session import Session
-from pliant.cli.written import write_mesh
 
 
 class Way(StrEnum):
@@ -39,11 +39,9 @@ def smooth(
     with Session(json=json, quiet=quiet) as session:
         import numpy as np
 
-        from pliant.io.meshes import read
         from pliant.surface.smoothing import smooth as smoothed
 
-        shape = read(mesh)
-        session.say(f"read {mesh}: {len(shape.points):,} points, {len(shape.faces):,} faces")
+        shape = read_mesh(session, mesh)
         within = None if roi is None else vertices(roi, shape, "--roi")
         with session.patience():
             result = smoothed(shape, iterations, method=method.value, strength=strength, within=within)

@@ -8,8 +8,8 @@ from typing import Annotated
 import typer
 
 from pliant.cli import options as opt
+from pliant.cli.meshes import write_mesh
 from pliant.cli.session import Session
-from pliant.cli.written import write_mesh
 
 
 def transfer(

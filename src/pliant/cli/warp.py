@@ -54,7 +54,6 @@ def warp(
         with session.patience():
             result = warp_image(source, deformer, reference=grid, interpolation=interpolation.value, fill=fill)
         report = write_image(result, output)
-        for note in report.notes:
-            session.say(f"note: {note}")
+        session.tell_losses(report)
         session.say(f"wrote {output}")
         session.result(input=image, output=output, voxels=list(result.values.shape), notes=report.notes)

@@ -1,4 +1,4 @@
-"""How a command that made a mesh ends: it is written, and losses are told."""
+"""How commands read and write meshes: what was read is said, and what a format does not hold."""
 
 from __future__ import annotations
 
@@ -12,14 +12,20 @@ if TYPE_CHECKING:
     from pliant.mesh import PolygonMesh
 
 
+def read_mesh(session: Session, path: Path) -> PolygonMesh:
+    """Read a mesh, and say how large it is."""
+    from pliant.io.meshes import read
+
+    mesh = read(path)
+    session.say(f"read {path}: {len(mesh.points):,} points, {len(mesh.faces):,} faces")
+    return mesh
+
+
 def write_mesh(session: Session, mesh: PolygonMesh, output: Path, *, strict: bool = False) -> LossReport:
     """Write a mesh, and say what its format does not hold."""
     from pliant.io.meshes import write
 
     report = write(mesh, output, strict=strict)
-    for loss in report.losses:
-        session.warn(f"{output} does not hold: {loss}")
-    for note in report.notes:
-        session.say(f"note: {note}")
+    session.tell_losses(report)
     session.say(f"wrote {output}")
     return report
