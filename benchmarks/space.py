@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib.util
 import subprocess
 import sys
 
@@ -215,6 +216,7 @@ def free_lattice_comparisons() -> list[Comparison]:
                 "pliant, Sibson": lambda: DirichletFFD(sites).bind(points),
                 "pliant, Laplace": lambda: DirichletFFD(sites, coordinates="laplace").bind(points),
                 "pliant, Farin's C1 form": lambda: DirichletFFD(sites, smooth=True).bind(points),
+                **natinterp3d_weights(sites, points),
                 "SciPy Delaunay, linear weights": lambda: scipy_linear_weights(sites, points),
             },
             rounds=5,
@@ -232,6 +234,15 @@ def free_lattice_comparisons() -> list[Comparison]:
             rounds=5,
         ),
     ]
+
+
+def natinterp3d_weights(sites, points):
+    """The same weights by natinterp3d, where it is installed: GPL, so that nothing here asks for it."""
+    if importlib.util.find_spec("natinterp3d") is None:
+        return {}
+    from natinterp3d import get_weights
+
+    return {"natinterp3d, Sibson": lambda: get_weights(points, sites)}
 
 
 def scipy_linear_weights(sites, points):
