@@ -62,6 +62,11 @@ HEIGHT_FROM_ENDS = np.minimum(MESH.points[:, 2], 4 - MESH.points[:, 2])
 def test_an_empty_stack_is_the_identity():
     assert np.array_equal(pl.Stack()(MESH).points, MESH.points)
     assert pl.Stack().bind(MESH).deform() is not MESH.points
+    nothing = np.zeros(0)
+    assert len(pl.Stack().moved(nothing)) == 0
+    binding = pl.Stack().bind(MESH)
+    np.testing.assert_array_equal(binding.jvp(None, nothing), 0.0)
+    assert binding.vjp(None, MESH.points).shape == (0,)
 
 
 def test_what_is_muted_or_alone_decides_who_is_heard():

@@ -154,6 +154,11 @@ class Layer:
             )
 
 
+def column(strength: Strength) -> Strength:
+    """A strength shaped to multiply (n, 3): one number, or (n, 1)."""
+    return strength[:, None] if isinstance(strength, np.ndarray) else strength
+
+
 def blended(before: Points, after: Points, strength: Strength) -> Points:
     """Overwrite ``after`` by before + strength (after - before)."""
     if isinstance(strength, float) and strength == 1.0:

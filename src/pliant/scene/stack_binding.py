@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
-from pliant.deformer import Binding, Controls, SpaceDeformer, Target, checked_controls, checked_out
-from pliant.errors import InvalidTarget, NotDifferentiable
+from pliant.deformer import Binding, Controls, Target, checked_controls, checked_out
+from pliant.errors import InvalidTarget
 from pliant.mesh import Points, PolygonMesh, as_points
 from pliant.scene.cache import Cache
 from pliant.scene.keys import array_key
 from pliant.scene.layer import Layer
+from pliant.scene.layer_controls import flat, parts
+from pliant.scene.stack_chain import StackChain
 from pliant.scene.stack_step import Evaluator, Ground, Step, controls_of
 
 if TYPE_CHECKING:
@@ -156,6 +157,10 @@ class StackBinding(Binding):
         step = self._steps.get(name) or self._unheard(layer)
         return self._evaluator.binding(step)
 
+    def has_bound(self, layer: Layer) -> bool:
+        """Whether a layer that edits the surface, of this stack or of another on the same shape, is bound already."""
+        return self._evaluator.has_bound(layer)
+
     def drag_layer(self, name: str, controls: ArrayLike | None = None) -> LayerDrag:
         """Begin to move the controls of one layer: only points that they reach travel through the layers above.
 
@@ -186,16 +191,15 @@ class StackBinding(Binding):
     @property
     def rest(self) -> Controls:
         """(p,) the rest controls of all layers."""
-        return np.concatenate([np.zeros(0), *(rest.reshape(-1) for rest in self._rests)])
+        return flat(self._rests)
 
     @cached_property
     def controls(self) -> Controls:
         """(p,) the controls of all layers."""
-        parts = [
+        return flat(
             layer.deformer.controls if layer.in_space else controls_of(layer, self.bound(layer.name))
             for layer in self.stack.layers
-        ]
-        return np.concatenate([np.zeros(0), *(part.reshape(-1) for part in parts)])
+        )
 
     @property
     def points(self) -> Points:
@@ -216,52 +220,26 @@ class StackBinding(Binding):
             A layer that edits a surface stands on others, or has no derivative itself.
         """
         changes = self._split(checked_controls(d_controls, self.rest.shape))
-        moved = np.zeros_like(self._result)
-        for step, strength, carries in self._at(controls)._chain():
-            own = self._evaluator.binding(step).jvp(_controls(step, self._evaluator), changes[step.layer.name])
-            if carries:
-                assert isinstance(step.layer.deformer, SpaceDeformer)
-                own += np.einsum("nij,nj->ni", step.layer.deformer.jacobian(step.at), moved) - moved
-            moved += strength * own
-        return moved
+        return self._at(controls)._chain.push(changes, len(self._result))
 
     def vjp(self, controls: ArrayLike | None, d_points: ArrayLike) -> Controls:
         """(p,) the transpose of :meth:`jvp`."""
-        gradient = checked_controls(d_points, self._result.shape)
-        pulled = {layer.name: np.zeros_like(rest) for layer, rest in zip(self.stack.layers, self._rests, strict=True)}
-        for step, strength, carries in reversed(list(self._at(controls)._chain())):
-            part = strength * gradient
-            pulled[step.layer.name] = self._evaluator.binding(step).vjp(_controls(step, self._evaluator), part)
-            if carries:
-                assert isinstance(step.layer.deformer, SpaceDeformer)
-                gradient = gradient - part + np.einsum("nji,nj->ni", step.layer.deformer.jacobian(step.at), part)
-        return np.concatenate([np.zeros(0), *(part.reshape(-1) for part in pulled.values())])
+        pulled = self._at(controls)._chain.pull(checked_controls(d_points, self._result.shape))
+        names = zip(self.stack.names, self._rests, strict=True)
+        return flat(pulled[name] if name in pulled else np.zeros_like(rest) for name, rest in names)
 
-    def _chain(self) -> Iterator[tuple[Step, float | NDArray[np.float64], bool]]:
-        """Each active step, how strong it is, and whether it carries on what those below do."""
-        composed = self.stack.mode == "compose"
-        for place, step in enumerate(self._steps.values()):
-            if composed and not step.layer.in_space and (place or self._ground.moved):
-                raise NotDifferentiable(
-                    f"layer {step.layer.name!r} edits a surface that other layers have turned: it has no derivative; "
-                    "move it to the bottom, or add the layers instead of composing them"
-                )
-            strength = step.layer.strength
-            yield step, strength[:, None] if isinstance(strength, np.ndarray) else strength, composed and place > 0
+    @property
+    def _chain(self) -> StackChain:
+        return StackChain(self._steps.values(), self._evaluator, self.stack.mode == "compose", self._ground.moved)
 
     def _at(self, controls: ArrayLike | None) -> StackBinding:
         return self if controls is None else self.updated(self.stack.moved(controls))
 
     def _split(self, controls: Controls) -> dict[str, Controls]:
-        parts = np.split(controls, np.cumsum([rest.size for rest in self._rests])[:-1])
-        named = zip(self.stack.names, parts, self._rests, strict=True)
-        return {name: part.reshape(rest.shape) for name, part, rest in named}
+        shapes = [rest.shape for rest in self._rests]
+        return dict(zip(self.stack.names, parts(controls, shapes), strict=True))
 
     def _unheard(self, layer: Layer) -> Step:
         """A layer that is left out, as if it were not."""
         below = self.below(layer.name)
         return self._evaluator.step(layer, below, array_key(below))
-
-
-def _controls(step: Step, evaluator: Evaluator) -> Controls:
-    return controls_of(step.layer, evaluator.binding(step))

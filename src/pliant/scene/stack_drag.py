@@ -9,9 +9,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from pliant.deformer import Controls, Drag
 from pliant.mesh import Points, PolygonMesh
-from pliant.scene.frames import turned
 from pliant.scene.layer import Layer, blended
 from pliant.scene.stack_step import controls_of
+from pliant.scene.turning import turned
 
 if TYPE_CHECKING:
     from pliant.scene.stack import Stack

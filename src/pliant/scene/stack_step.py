@@ -5,15 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pliant.deformer import Binding, Controls, Target
 from pliant.errors import InvalidControls
 from pliant.mesh import Points, PolygonMesh, as_points
 from pliant.scene.cache import Cache
-from pliant.scene.frames import turned
 from pliant.scene.keys import key_of
-from pliant.scene.layer import Layer, blended
+from pliant.scene.layer import Layer, blended, column
+from pliant.scene.turning import turned
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,6 +96,10 @@ class Evaluator:
         """The step's deformer, bound to what it deforms; bound once."""
         return self._bound(step.layer, step.at, step.place)
 
+    def has_bound(self, layer: Layer) -> bool:
+        """Whether a layer that edits the surface is bound to the shape at rest."""
+        return not layer.in_space and self._cache.get(key_of("place", layer.structure, b"rest")) is not None
+
     def near(self, layer: Layer) -> Points | None:
         """(n, 3) what stands for the image of a layer that edits the surface, until that is computed."""
         found: Points | None = None if layer.in_space else self._cache.get(key_of("near", layer.content))
@@ -121,11 +124,11 @@ class Evaluator:
             image = self._image(layer, at, place) if near is None else near.copy()
             return blended(below, image, layer.strength)
         key = key_of("displacement", layer.content, place)
-        displacement = self._cache.get(key) if near is None else _column(layer.strength) * (near - at)
+        displacement = self._cache.get(key) if near is None else column(layer.strength) * (near - at)
         if displacement is None:
             displacement = self._image(layer, at, place)
             displacement -= at
-            displacement *= _column(layer.strength)
+            displacement *= column(layer.strength)
             self._cache.put(key, displacement, displacement.nbytes)
         if self._added or below_key == b"rest" or not isinstance(self._ground.target, PolygonMesh):
             return np.asarray(below + displacement)
@@ -167,7 +170,3 @@ def carried(mesh: PolygonMesh, below: Points, displacement: Points) -> Points:
     points = below.copy()
     points[vertices] += np.einsum("nij,nj->ni", turned(mesh, below, vertices), displacement[vertices])
     return points
-
-
-def _column(strength: float | NDArray[np.float64]) -> float | NDArray[np.float64]:
-    return strength[:, None] if isinstance(strength, np.ndarray) else strength

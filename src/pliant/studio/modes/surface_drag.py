@@ -17,9 +17,9 @@ from pliant.deformer import Controls
 from pliant.errors import InvalidParameter
 from pliant.iterative import IterativeDrag
 from pliant.mesh import Points
-from pliant.scene.frames import turned
 from pliant.scene.stack import Stack
 from pliant.scene.stack_drag import LayerDrag
+from pliant.scene.turning import turned
 from pliant.studio.dragging import Dragging
 from pliant.studio.modes.layering import with_layer
 from pliant.studio.modes.skeletons import followed_skeleton
