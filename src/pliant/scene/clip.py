@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
@@ -13,13 +14,14 @@ from pliant.errors import InvalidParameter
 from pliant.io.report import LossReport
 from pliant.mesh import Points, PolygonMesh
 from pliant.scene.easing import Easing
-from pliant.scene.keyed import checked_value, keyed_layer
+from pliant.scene.keyed import keyed_layer
 from pliant.scene.sequence import MeshSequence
 from pliant.scene.stack import Stack
 from pliant.scene.stack_binding import StackBinding
-from pliant.scene.track import Key, Track
+from pliant.scene.timing import Ending, Timing
+from pliant.scene.track import Track
+from pliant.scene.tracks import require_tracks, with_keys, without_key
 
-Ending = Literal["once", "loop", "ping-pong"]
 Progress = Callable[[int, int], None]
 
 
@@ -72,26 +74,16 @@ class Clip:
     amplify: float = 1.0
 
     def __post_init__(self) -> None:
-        for name in ("duration", "fps"):
-            if not 0 < float(getattr(self, name)) < np.inf:
-                raise InvalidParameter(f"the clip is empty: its {name} is {getattr(self, name)}; it must be positive")
+        self._timing  # noqa: B018 -- what no clip lasts is refused now, not later
         for name in ("intensity", "amplify"):
             if not np.isfinite(float(getattr(self, name))):
                 raise InvalidParameter(f"the clip's {name} is {getattr(self, name)}; it must be finite")
-        if self.ending not in ("once", "loop", "ping-pong"):
-            raise InvalidParameter(f"a clip ends by 'once', 'loop' or 'ping-pong', not {self.ending!r}")
         if self.motion is not None and self.motion.count != len(self.mesh.points):
             raise InvalidParameter(
                 f"the motion is one of {self.motion.count:,} points; the mesh has {len(self.mesh.points):,}"
             )
         object.__setattr__(self, "tracks", tuple(self.tracks))
-        seen: set[tuple[str, str]] = set()
-        for track in self.tracks:
-            if (track.layer, track.field) in seen:
-                raise InvalidParameter(f"{track.field!r} of layer {track.layer!r} has two tracks: join their keys")
-            seen.add((track.layer, track.field))
-            for key in track.keys:
-                checked_value(self.stack[track.layer], track.field, key.value)
+        require_tracks(self.tracks, self.stack)
 
     def key(
         self, layer: str, time: float, values: Mapping[str, Any], easing: Easing | Sequence[float] = "linear"
@@ -117,14 +109,7 @@ class Clip:
         InvalidParameter
             No such layer or field, a value of another shape, an unknown easing.
         """
-        tracks = {(track.layer, track.field): track for track in self.tracks}
-        for field, value in values.items():
-            checked = checked_value(self.stack[layer], field, value)
-            given = easing if isinstance(easing, str) else tuple(easing)
-            key = Key(time, checked, given)  # type: ignore[arg-type]
-            track = tracks.get((layer, field))
-            tracks[layer, field] = Track(layer, field, (key,)) if track is None else track.with_key(key)
-        return replace(self, tracks=tuple(tracks.values()))
+        return replace(self, tracks=with_keys(self.tracks, self.stack, layer, time, values, easing))
 
     def without_key(self, layer: str, field: str, time: float) -> Clip:
         """The clip without a key; a track without keys is gone.
@@ -141,11 +126,7 @@ class Clip:
         InvalidParameter
             There is no such key.
         """
-        found = [track for track in self.tracks if (track.layer, track.field) == (layer, field)]
-        if not found:
-            raise InvalidParameter(f"{field!r} of layer {layer!r} has no keys")
-        changed = [track.without(time) if track is found[0] else track for track in self.tracks]
-        return replace(self, tracks=tuple(track for track in changed if track is not None))
+        return replace(self, tracks=without_key(self.tracks, layer, field, time))
 
     def on(self, mesh: PolygonMesh, stack: Stack) -> Clip:
         """The clip with another mesh and stack; keys of layers that are not there any more are left out.
@@ -176,14 +157,12 @@ class Clip:
     @property
     def period(self) -> float:
         """Seconds after which it has been all through."""
-        return 2 * self.duration if self.ending == "ping-pong" else self.duration
+        return self._timing.period
 
     @property
     def times(self) -> tuple[float, ...]:
         """The times of its frames: of a clip that returns to its beginning, each moment once."""
-        count = max(1, round(self.period * self.fps))
-        last = count + 1 if self.ending == "once" else count
-        return tuple(min(i / self.fps, self.period) for i in range(last))
+        return self._timing.times
 
     def stack_at(self, time: float) -> Stack:
         """The stack as the keys say at a time.
@@ -193,7 +172,7 @@ class Clip:
         time
             In seconds; beyond the end, as the clip's ending says.
         """
-        moment, stack = self._moment(time), self.stack
+        moment, stack = self._timing.moment(time), self.stack
         for name in dict.fromkeys(track.layer for track in self.tracks):
             values = {track.field: track.at(moment) for track in self.tracks if track.layer == name}
             stack = stack._exchanged(name, keyed_layer(stack[name], values))
@@ -209,7 +188,7 @@ class Clip:
         """
         if self.motion is None:
             return None
-        frame = self.motion.at(self._moment(time))
+        frame = self.motion.at(self._timing.moment(time))
         return frame if self.amplify == 1.0 else self.mesh.points + self.amplify * (frame - self.mesh.points)
 
     def sample(self, time: float) -> PolygonMesh:
@@ -284,12 +263,9 @@ class Clip:
 
         return export_clip(self, path, progress=progress, **options)
 
-    def _moment(self, time: float) -> float:
-        """The time in the keys' own count."""
-        if self.ending == "once":
-            return min(max(float(time), 0.0), self.duration)
-        moment = float(time) % self.period
-        return self.period - moment if moment > self.duration else moment
+    @cached_property
+    def _timing(self) -> Timing:
+        return Timing(self.duration, self.fps, self.ending)
 
     def _binding(self) -> StackBinding:
         return self.stack_at(0.0).bind(self.mesh)
