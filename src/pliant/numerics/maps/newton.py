@@ -92,8 +92,9 @@ def solve(
         return Solution(images, images.copy(), np.zeros(0), none, none)
     scale = float(np.linalg.norm([np.ptp(images[:, axis]) for axis in range(3)])) or 1.0
     accepted = tolerance * scale
-    x, error, ratio = images.copy(), np.full(len(images), np.inf), np.ones(len(images))
-    if fused is not None:
+    if fused is None:
+        x, error, ratio = images.copy(), np.full(len(images), np.inf), np.ones(len(images))
+    else:
         x, error, ratio = fused(images, accepted, iterations)
     for approach in (_iterate, _follow):
         failed = np.flatnonzero(~(error <= accepted))
