@@ -245,9 +245,9 @@ def test_a_number_that_64_bits_do_not_hold_is_refused(edited):
         assert told["kind"] == "InvalidParameter"
 
 
-def large_ring():
+def large_ring(around=72):
     """A region of more than two thousand vertices, and a handle on its far side."""
-    ring = torus(around=72, across=36)
+    ring = torus(around=around, across=36)
     x = ring.points[:, 0]
     return ring, np.flatnonzero(x > x.min() + 0.2), np.flatnonzero(x > x.max() - 0.15)
 
@@ -318,3 +318,77 @@ def test_the_next_drag_goes_on_from_what_is_shown(edited):
     page.ask(session, "surface.cancel")
     expected = session.scene.stack[layer].deformer(ring).points
     np.testing.assert_allclose(session.shown.binding.result, expected, atol=1e-9)
+
+
+def large_drag(session, page):
+    """A handle of a large shape in hand; jobs are held back until somebody sets the event."""
+    ring, region, handle = large_ring(around=120)
+    session.begin(Scene(ring), "ring")
+    held = Event()
+    session.jobs._pool.submit(held.wait, 60)
+    structure = {"region": region.astype(np.uint32), "handle": handle.astype(np.uint32)}
+    page.ask(session, "surface.begin", {"method": "laplacian"}, **structure)
+    return ring, region, handle, held
+
+
+def test_a_long_switch_is_made_beside_the_session_while_the_drag_goes_on(edited):
+    session, page = edited(Scene(BAR))
+    ring, region, handle, held = large_drag(session, page)
+    matrix = turn(0.4, shift=(0.0, 0.0, 0.3))
+    told = page.ask(session, "surface.move", {"method": "skeleton"}, matrix=sent(matrix)).head
+    assert told["method"] == "laplacian"
+    assert told["job"] == page.events("progress")[-1].head["job"]
+    goal = moved(ring.points[handle], matrix)
+    expected = pl.LaplacianEdit(region, handle, goal=goal)(ring).points
+    np.testing.assert_allclose(session.dragging._drag.points, expected, atol=1e-9)
+    held.set()
+    settled(session, page)
+    told = page.ask(session, "surface.move", {"method": "skeleton"}).head
+    assert told["method"] == "skeleton"
+    assert "job" not in told
+    expected = pl.SkeletonEdit(region, handle, goal=goal)(ring).points
+    np.testing.assert_allclose(session.dragging._drag.points, expected, atol=1e-9)
+    page.ask(session, "surface.commit")
+    assert isinstance(session.scene.stack["Edit"].deformer, pl.SkeletonEdit)
+
+
+def test_a_long_switch_can_be_given_up_and_asked_for_again(edited):
+    session, page = edited(Scene(BAR))
+    *_, held = large_drag(session, page)
+    job = page.ask(session, "surface.move", {"method": "arap"}).head["job"]
+    page.ask(session, "job.cancel", {"job": job})
+    told = page.ask(session, "surface.move", {"method": "arap"}).head
+    assert (told["method"], told["given_up"]) == ("laplacian", "arap")
+    told = page.ask(session, "surface.move", {"method": "laplacian"}).head
+    assert told["method"] == "laplacian"
+    assert "given_up" not in told
+    again = page.ask(session, "surface.move", {"method": "arap"}).head
+    assert again["job"] != job
+    held.set()
+    page.ask(session, "surface.cancel")
+
+
+def test_a_layer_changes_its_method_when_that_is_bound(edited):
+    session, page = edited(Scene(BAR))
+    ring, region, handle, held = large_drag(session, page)
+    page.ask(session, "surface.move", matrix=sent(turn(0.4)))
+    page.ask(session, "surface.commit")
+    goal = session.scene.stack["Edit"].deformer.goal
+    job = page.ask(session, "surface.method", {"layer": "Edit", "method": "skeleton"}).head["job"]
+    assert isinstance(session.scene.stack["Edit"].deformer, pl.LaplacianEdit)
+    assert job
+    held.set()
+    settled(session, page)
+    assert [entry.key for entry in session.history.entries][1:] == ["edit", "method"]
+    expected = pl.SkeletonEdit(region, handle, goal=goal)(ring).points
+    np.testing.assert_allclose(session.shown.binding.result, expected, atol=1e-9)
+    later = page.ask(session, "surface.method", {"layer": "Edit", "method": "laplacian"})
+    assert "job" not in later.head  # known: at once
+
+
+def test_a_handle_that_is_turned_about_the_limb_twists_it(edited):
+    session, page = edited(Scene(BAR))
+    begun(session, page, "skeleton")
+    matrix = turn(np.pi / 2, axis=0)  # the bar lies along x
+    page.ask(session, "surface.move", matrix=sent(matrix))
+    np.testing.assert_allclose(session.dragging._drag.points[HANDLE], moved(BAR.points[HANDLE], matrix), atol=1e-9)

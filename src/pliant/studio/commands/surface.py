@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 from pliant.errors import InvalidParameter
 from pliant.numerics.meshes.geodesics import geodesic_distance
 from pliant.studio.dragging import begin, cancel, commit, ongoing
+from pliant.studio.modes.method_switch import edit_of, exchange, method_of
 from pliant.studio.modes.skeletons import show_skeleton, skeleton_frame
-from pliant.studio.modes.surface_drag import METHODS, SurfaceDrag, edit_of, method_of
+from pliant.studio.modes.surface_drag import SurfaceDrag
 from pliant.studio.request import Request, command
 from pliant.studio.seen.parts import vertices_of
 from pliant.studio.serving.frames import Frame
@@ -105,15 +106,10 @@ def restructure(session: Session, request: Request) -> None:
 
 
 @command("surface.method")
-def method(session: Session, request: Request) -> None:
-    """The same edit by another method."""
-    stack, name = session.required.stack, request.text("layer")
-    deformer, wanted = edit_of(stack, name), request.text("method")
-    if wanted not in METHODS:
-        raise InvalidParameter(f"no method is called {wanted!r}; there are: {', '.join(METHODS)}")
-    made = METHODS[wanted](deformer.roi, deformer.handle, goal=deformer.goal)
-    session.drop_drag()
-    session.commit(session.required.replace(stack=stack.replace(name, deformer=made)), "method", name)
+def method(session: Session, request: Request) -> Frame:
+    """The same edit by another method: at once, or when a job has bound it."""
+    coming = exchange(session, request.text("layer"), request.text("method"))
+    return Frame({} if coming is None else {"job": coming.name})
 
 
 @command("surface.begin")
@@ -126,27 +122,34 @@ def take_hold(session: Session, request: Request) -> Frame:
         structure = request.indices("region", count), request.indices("handle", count)
     drag = SurfaceDrag(session, request.client, name, wanted, structure)
     begin(drag, session)
-    return Frame({"layer": drag.layer})
+    return Frame({"layer": drag.layer, **_by(drag)})
 
 
 @command("surface.move")
 def move(session: Session, request: Request) -> Frame:
     """Put the handle somewhere else, by this method or by another; where it is already, go on converging."""
-    return ongoing(session, request).preview(request)
+    drag = _surface_drag(session, request)
+    frame = drag.preview(request)
+    return Frame({**frame.head, **_by(drag)}, frame.arrays)
 
 
 @command("surface.commit")
 def let_go(session: Session, request: Request) -> None:
     """Let go of the handle, where it is: what is left of a long iteration goes on in the background."""
-    drag = ongoing(session, request)
-    near = isinstance(drag, SurfaceDrag) and drag.suppose()
+    drag = _surface_drag(session, request)
+    near = drag.suppose()
+    drag.give_up()
     commit(session, request)
     if near:
         binding = session.shown.binding
         session.jobs.run(drag.layer, lambda _: binding.settled(), lambda _: session.show_again())
 
 
-command("surface.cancel")(cancel)
+@command("surface.cancel")
+def give_up(session: Session, request: Request) -> None:
+    """Undo what the drag did, and wait for no other method."""
+    _surface_drag(session, request).give_up()
+    cancel(session, request)
 
 
 @command("surface.skeleton")
@@ -162,6 +165,21 @@ def skeleton(session: Session, request: Request) -> Frame:
         frame = skeleton_frame(session)
         return Frame({**frame.head, "known": True}, frame.arrays)
     return Frame({"known": False})
+
+
+def _surface_drag(session: Session, request: Request) -> SurfaceDrag:
+    drag = ongoing(session, request)
+    if not isinstance(drag, SurfaceDrag):
+        raise InvalidParameter("what is dragged on this page is no handle of the surface")
+    return drag
+
+
+def _by(drag: SurfaceDrag) -> dict[str, str]:
+    """The method of a drag, and the job that binds another, or which one has been given up."""
+    coming = drag.coming
+    if coming is None:
+        return {"method": drag.method}
+    return {"method": drag.method} | ({"given_up": coming.method} if coming.given_up else {"job": coming.name})
 
 
 def _seen(session: Session, request: Request) -> SeenMesh:

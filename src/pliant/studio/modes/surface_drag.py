@@ -7,7 +7,6 @@ turned it. So the map is applied to where the handle is seen, and what has moved
 from __future__ import annotations
 
 import time
-from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -22,17 +21,21 @@ from pliant.scene.stack_drag import LayerDrag
 from pliant.scene.turning import turned
 from pliant.studio.dragging import Dragging
 from pliant.studio.modes.layering import with_layer
+from pliant.studio.modes.method_switch import (
+    Preparation,
+    at_rest,
+    by_method,
+    edit_of,
+    known_method,
+    method_of,
+    takes_long,
+)
 from pliant.studio.modes.skeletons import followed_skeleton
 from pliant.studio.request import Client, Request
 from pliant.surface.arap import ARAP
-from pliant.surface.editing import SurfaceDeformer
-from pliant.surface.laplacian_edit import LaplacianEdit
-from pliant.surface.skeleton_edit import SkeletonEdit
 
 if TYPE_CHECKING:
     from pliant.studio.session import Session
-
-METHODS: dict[str, type[SurfaceDeformer]] = {"laplacian": LaplacianEdit, "arap": ARAP, "skeleton": SkeletonEdit}
 
 _PATIENCE = 0.028  # seconds of iterating in an answer: what is left of 50 goes into drawing
 _FIRST = 2  # iterations, before it is known how long one takes
@@ -50,9 +53,16 @@ class SurfaceDrag(Dragging):
     layer
         The layer that is dragged; empty where one is made.
     method
-        By which the surface follows.
+        By which the surface shall follow: as soon as it is bound.
     structure
         Region and handle of a layer that is made.
+
+    Attributes
+    ----------
+    method
+        By which the surface follows now.
+    coming
+        What is being bound for this drag; None = nothing.
     """
 
     def __init__(
@@ -64,23 +74,25 @@ class SurfaceDrag(Dragging):
         structure: tuple[NDArray[np.int64], NDArray[np.int64]] | None,
     ) -> None:
         stack = session.required.stack
-        _known(method)
+        kind = known_method(method)
         if structure is not None:
-            stack, layer = with_layer(stack, "Edit", METHODS[method](*structure))
+            stack, layer = with_layer(stack, "Edit", kind(*structure))
+            if takes_long(session, stack, layer):
+                stack = by_method(stack, layer, "laplacian")
         super().__init__(session, client, layer, "edit", stack)
         deformer = edit_of(stack, layer)
         self._session, self._per_step = session, 0.0
-        self._method = method_of(deformer)
+        self.method = method_of(deformer)
+        self.coming: Preparation | None = None
         goal = deformer.goal
         binding = session.shown.binding.updated(stack)
         bound = binding.bound(layer)
-        self._begin(stack.replace(layer, deformer=_at_rest(deformer)))
+        self._begin(at_rest(stack, layer))
         self._goal: Controls = np.array(bound.rest if goal is None else goal)
         if goal is not None and isinstance(self._drag.inner, IterativeDrag):
             self._drag.inner.resume(binding.image(layer))
         self._see(binding.below(layer), binding.bound(layer).rest)
-        if method != self._method:
-            self._switch(method)
+        self._follow(method)
 
     def _begin(self, stack: Stack) -> None:
         """Drag from the edit at rest: the first update moves all that it has moved before."""
@@ -109,21 +121,39 @@ class SurfaceDrag(Dragging):
         back = to if self._turns is None else np.einsum("nji,nj->ni", self._turns, to)
         return np.asarray(self._rest + back / self._share)
 
+    def _follow(self, method: str) -> None:
+        """Go on by a method, now or as soon as it is bound; where that is given up, by the one before."""
+        known_method(method)
+        if self.coming is not None and self.coming.method != method:
+            self.give_up()
+        if method == self.method:
+            return
+        if self.coming is None:
+            stack = at_rest(by_method(self._drag.stack, self.layer, method), self.layer)
+            if takes_long(self._session, stack, self.layer):
+                self.coming = Preparation(self._session, method, stack, self.layer)
+                return
+        if self.coming is None or self.coming.arrived:
+            self._switch(method)
+            self.coming = None
+
+    def give_up(self) -> None:
+        """Wait for no other method."""
+        if self.coming is not None:
+            self.coming.stop()
+            self.coming = None
+
     def _switch(self, method: str) -> None:
         """Another method, from where this one has arrived."""
-        now = _known(method)
         before = self._drag
-        old = edit_of(before.stack, self.layer)
         arrived = np.array(before.inner.points)
-        self._begin(before.stack.replace(self.layer, deformer=now(old.roi, old.handle)))
-        self._method, self._per_step = method, 0.0
+        self._begin(at_rest(by_method(before.stack, self.layer, method), self.layer))
+        self.method, self._per_step = method, 0.0
         if isinstance(self._drag.inner, IterativeDrag) and isinstance(edit_of(self._drag.stack, self.layer), ARAP):
             self._drag.inner.resume(arrived)
 
     def move(self, request: Request) -> tuple[NDArray[np.integer], Points, dict[str, NDArray[Any]]]:
-        wanted = request.text("method", self._method)
-        if wanted != self._method:
-            self._switch(wanted)
+        self._follow(request.text("method", self.method))
         if "matrix" in request.arrays:
             matrix = np.asarray(request.array("matrix"), np.float64)
             if matrix.size != 16:
@@ -133,7 +163,7 @@ class SurfaceDrag(Dragging):
 
     def _updated(self) -> tuple[NDArray[np.integer], Points, dict[str, NDArray[Any]]]:
         arrays: dict[str, NDArray[Any]] = {}
-        if isinstance(self._drag.inner, IterativeDrag) and self._method == "arap":
+        if isinstance(self._drag.inner, IterativeDrag) and self.method == "arap":
             touched = self._converge(self._drag.inner, arrays)
         else:
             touched = self._drag.update(self._goal)
@@ -158,7 +188,7 @@ class SurfaceDrag(Dragging):
         layer, inner = self.stack[self.layer], self._drag.inner
         edit = edit_of(self.stack, self.layer)
         short = np.arange(len(inner.points))[np.asarray(edit.roi)].size < _LONG
-        if self._method != "arap" or short or not isinstance(inner, IterativeDrag) or inner.solution is None:
+        if self.method != "arap" or short or not isinstance(inner, IterativeDrag) or inner.solution is None:
             return False
         self._session.shown.binding.suppose(layer, inner.points)
         return True
@@ -166,32 +196,3 @@ class SurfaceDrag(Dragging):
     @property
     def stack(self) -> Stack:
         return self._drag.stack.replace(self.layer, deformer=edit_of(self._drag.stack, self.layer).moved(self._goal))
-
-
-def edit_of(stack: Stack, layer: str) -> SurfaceDeformer:
-    """The deformer of a layer that edits the surface.
-
-    Raises
-    ------
-    InvalidParameter
-        The layer is of another kind.
-    """
-    deformer = stack[layer].deformer
-    if not isinstance(deformer, SurfaceDeformer):
-        raise InvalidParameter(f"layer {layer!r} has no region and no handle: choose one that edits the surface")
-    return deformer
-
-
-def method_of(deformer: SurfaceDeformer) -> str:
-    """What a deformer's method is called here."""
-    return next(name for name, kind in METHODS.items() if isinstance(deformer, kind))
-
-
-def _known(method: str) -> type[SurfaceDeformer]:
-    if method not in METHODS:
-        raise InvalidParameter(f"no method is called {method!r}; there are: {', '.join(METHODS)}")
-    return METHODS[method]
-
-
-def _at_rest(deformer: SurfaceDeformer) -> SurfaceDeformer:
-    return deformer if deformer.goal is None else replace(deformer, goal=None)
