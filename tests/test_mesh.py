@@ -5,7 +5,7 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from pliant.errors import InvalidMesh
+from pliant.errors import InvalidMesh, InvalidParameter
 from pliant.mesh import CornerValues, FaceLabels, PolygonMesh, as_points
 
 
@@ -127,9 +127,11 @@ def test_corner_values_and_labels():
     assert np.array_equal(values.per_corner, [[1, 2], [np.nan, np.nan]], equal_nan=True)
     with pytest.raises(InvalidMesh, match="corners use value 1; there are 1"):
         CornerValues([[1.0, 2.0]], [0, 1])
+    with pytest.raises(InvalidMesh, match="corners use value -2; there are 1"):
+        CornerValues([[1.0, 2.0]], [0, -2])
     labels = FaceLabels(("a", "b"), [1, 0, 1])
     assert labels.faces("b").tolist() == [0, 2]
-    with pytest.raises(KeyError, match="there are: a, b"):
+    with pytest.raises(InvalidParameter, match="there are: a, b"):
         labels.faces("c")
 
 

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from pliant.errors import InvalidMesh
+from pliant.errors import InvalidMesh, InvalidParameter
 from pliant.numerics.ragged import frozen
 
 Floats = NDArray[np.float64]
@@ -35,7 +35,7 @@ class CornerValues:
         if self.values.ndim != 2:
             raise InvalidMesh(f"corner values have shape {self.values.shape}; one row a value is needed")
         if self.indices.size and not -1 <= self.indices.min() <= self.indices.max() < len(self.values):
-            raise InvalidMesh(f"corners use value {self.indices.max()}; there are {len(self.values)}")
+            raise InvalidMesh(f"corners use value {_worst(self.indices)}; there are {len(self.values)}")
 
     @property
     def per_corner(self) -> Floats:
@@ -63,12 +63,28 @@ class FaceLabels:
         object.__setattr__(self, "names", tuple(self.names))
         object.__setattr__(self, "indices", frozen(self.indices, np.int32))
         if self.indices.size and not -1 <= self.indices.min() <= self.indices.max() < len(self.names):
-            raise InvalidMesh(f"faces use label {self.indices.max()}; there are {len(self.names)}")
+            raise InvalidMesh(f"faces use label {_worst(self.indices)}; there are {len(self.names)}")
 
     def faces(self, name: str) -> NDArray[np.int64]:
-        """The faces that carry a name."""
+        """The faces that carry a name.
+
+        Parameters
+        ----------
+        name
+            One of the names.
+
+        Returns
+        -------
+        ndarray
+            (k,) faces, ascending.
+
+        Raises
+        ------
+        InvalidParameter
+            It is none of them.
+        """
         if name not in self.names:
-            raise KeyError(f"no label {name!r}; there are: {', '.join(self.names)}")
+            raise InvalidParameter(f"no label {name!r}; there are: {', '.join(self.names) or 'none'}")
         return np.flatnonzero(self.indices == self.names.index(name))
 
 
@@ -76,11 +92,24 @@ class FaceLabels:
 class Material:
     """What a material library says of one material, as far as pliant draws it.
 
-    ``color`` is a diffuse RGB triple in [0, 1]; ``texture`` the image of the diffuse colour; ``properties`` holds
-    every line of the library as it stood.
+    Parameters
+    ----------
+    name
+        What faces call it by.
+    color
+        The diffuse colour: red, green and blue in [0, 1].
+    texture
+        The image of the diffuse colour.
+    properties
+        Every line of the library as it stood: its word, and what follows.
     """
 
     name: str
     color: tuple[float, float, float] = (0.8, 0.8, 0.8)
     texture: Path | None = None
     properties: tuple[tuple[str, str], ...] = ()
+
+
+def _worst(indices: NDArray[np.int32]) -> int:
+    """The index that is too low, else the largest."""
+    return int(indices.min() if indices.min() < -1 else indices.max())

@@ -22,8 +22,8 @@ from pliant.attributes import CornerValues as CornerValues
 from pliant.attributes import FaceLabels as FaceLabels
 from pliant.attributes import Material as Material
 from pliant.errors import InvalidMesh
-from pliant.numerics.compute.chunks import for_chunks
 from pliant.numerics.meshes.adjacency import edge_use, neighbors, unique_edges
+from pliant.numerics.meshes.soundness import checked_points, require_cells, require_length, require_vertices
 from pliant.numerics.meshes.triangulation import polygon_normals, triangulate
 from pliant.numerics.ragged import Ragged, frozen
 
@@ -81,29 +81,25 @@ class PolygonMesh:
     carrier: Any = None
 
     def __post_init__(self) -> None:
-        points = np.asarray(self.points, np.float64)
-        if points.size == 0:
-            points = points.reshape(0, 3)
-        if points.ndim != 2 or points.shape[1] != 3:
-            raise InvalidMesh(f"points have shape {points.shape}; (n, 3) is needed")
-        _require_finite(points)
+        given = np.asarray(self.points, np.float64)
+        points = checked_points(given if given.size else np.empty((0, 3)))
         self._set(points=frozen(points, np.float64), faces=Ragged.of(self.faces))
         if self.lines is not None:
             self._set(lines=Ragged.of(self.lines))
-        _require_vertices(self.faces, len(points), "face")
-        _require_vertices(self.lines, len(points), "line")
+        require_vertices(self.faces, len(points), "face")
+        require_vertices(self.lines, len(points), "line")
         for kind, rows in self.cells.items():
-            _require_cells(np.asarray(rows), len(points), kind)
+            require_cells(np.asarray(rows), len(points), kind)
         for name, labels in (("groups", self.groups), ("objects", self.objects), ("materials", self.materials)):
             if labels is not None:
-                _require_length(name, labels.indices, len(self.faces), "faces")
+                require_length(name, labels.indices, len(self.faces), "faces")
         for name, corner in (("uvs", self.uvs), ("normals", self.normals)):
             if corner is not None:
-                _require_length(name, corner.indices, len(self.faces.flat), "corners")
+                require_length(name, corner.indices, len(self.faces.flat), "corners")
         for name, values in self.vertex_attributes.items():
-            _require_length(f"vertex attribute {name!r}", values, len(points), "vertices")
+            require_length(f"vertex attribute {name!r}", values, len(points), "vertices")
         for name, values in self.face_attributes.items():
-            _require_length(f"face attribute {name!r}", values, len(self.faces), "faces")
+            require_length(f"face attribute {name!r}", values, len(self.faces), "faces")
         self._set(
             vertex_attributes=_frozen_mapping(self.vertex_attributes),
             face_attributes=_frozen_mapping(self.face_attributes),
@@ -259,13 +255,7 @@ def as_points(target: PolygonMesh | ArrayLike, *, borrow: bool = False, finite: 
     """
     if isinstance(target, PolygonMesh):
         return target.points
-    points = np.asarray(target, np.float64)
-    if points.shape == (0,):
-        points = points.reshape(0, 3)
-    if points.ndim != 2 or points.shape[1] != 3:
-        raise InvalidMesh(f"points have shape {points.shape}; (n, 3) is needed")
-    if finite:
-        _require_finite(points)
+    points = checked_points(target, finite=finite)
     return np.ascontiguousarray(points) if borrow else frozen(points, np.float64)
 
 
@@ -275,43 +265,3 @@ def _rebuild(state: dict[str, Any]) -> PolygonMesh:
 
 def _frozen_mapping(values: Mapping[str, NDArray[Any]]) -> Mapping[str, NDArray[Any]]:
     return MappingProxyType({name: frozen(array, np.asarray(array).dtype) for name, array in values.items()})
-
-
-def _require_finite(points: Points) -> None:
-    sums = []
-    with np.errstate(over="ignore", invalid="ignore"):  # one fast pass; an overflow is looked at more closely below
-        for_chunks(lambda start, stop: sums.append(points[start:stop].sum()), len(points))
-    if np.isfinite(sums).all():
-        return
-    bad = np.flatnonzero(~np.isfinite(points).all(axis=1))
-    if len(bad):
-        raise InvalidMesh(
-            f"{len(bad)} of {len(points):,} points are not finite, the first is point {bad[0]}: {points[bad[0]]}"
-        )
-
-
-def _require_vertices(rows: Ragged | None, count: int, kind: str) -> None:
-    if rows is None:
-        return
-    ends = rows.offsets
-    if ends.ndim != 1 or rows.flat.ndim != 1 or not len(ends) or ends[0] or ends[-1] != len(rows.flat):
-        raise InvalidMesh(f"the rows of the {kind}s do not make up their {rows.flat.size:,} corners")
-    if len(rows) and rows.lengths.min() < 0:
-        raise InvalidMesh(f"{kind} {rows.lengths.argmin()} ends before it begins")
-    if not rows.flat.size or 0 <= rows.flat.min() <= rows.flat.max() < count:
-        return
-    at = int(np.flatnonzero((rows.flat < 0) | (rows.flat >= count))[0])
-    raise InvalidMesh(f"{kind} {rows.row_of[at]} uses vertex {rows.flat[at]}; there are {count} vertices")
-
-
-def _require_cells(rows: NDArray[Any], count: int, kind: str) -> None:
-    if rows.ndim != 2:
-        raise InvalidMesh(f"cells {kind!r} have shape {rows.shape}; one row a cell is needed")
-    if rows.size and not 0 <= rows.min() <= rows.max() < count:
-        worst = rows.min() if rows.min() < 0 else rows.max()
-        raise InvalidMesh(f"a cell of the kind {kind!r} uses vertex {worst}; there are {count} vertices")
-
-
-def _require_length(name: str, values: NDArray[Any], count: int, what: str) -> None:
-    if len(values) != count:
-        raise InvalidMesh(f"{name} has {len(values)} rows; there are {count} {what}")
