@@ -23,6 +23,10 @@ if TYPE_CHECKING:
     from pliant.studio.session import Session
 
 
+class DragOver(InvalidParameter):
+    """There is no drag any more: something else has changed the scene meanwhile."""
+
+
 class Dragging(ABC):
     """An interaction under way.
 
@@ -108,11 +112,11 @@ def ongoing(session: Session, request: Request) -> Dragging:
 
     Raises
     ------
-    InvalidParameter
+    DragOver
         It has none: it was given up, or never begun.
     """
     if session.dragging is None or session.dragging.client is not request.client:
-        raise InvalidParameter("there is no drag under way on this page")
+        raise DragOver("there is no drag under way on this page: something else has changed the scene; drag again")
     return session.dragging
 
 

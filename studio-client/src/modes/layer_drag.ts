@@ -2,6 +2,7 @@
 
 import type { Frame, Numbers } from "../transport/frame";
 import { Latest } from "../transport/latest";
+import { CommandError } from "../transport/session";
 import type { Studio } from "../studio";
 
 interface Job {
@@ -12,6 +13,14 @@ interface Job {
 
 /** How long the last move took until it was drawn, in milliseconds: for benchmarks. */
 export const latencies: number[] = [];
+
+/** The drag in hand, and when the last one that was in hand has ended. */
+let held: LayerDrag | null = null;
+let ending: Promise<void> = Promise.resolve();
+
+const hold = (drag: LayerDrag): void => void (held = drag);
+export const dragInHand = (): boolean => held !== null;
+export const dragEnded = (): Promise<void> => ending;
 
 export class LayerDrag {
   private readonly latest: Latest<Job>;
@@ -33,6 +42,7 @@ export class LayerDrag {
     void this.begun.then((answer) => {
       if (!answer) this.ended = true;
     });
+    hold(this);
   }
 
   move(values: Record<string, unknown>, arrays: Record<string, Numbers>): void {
@@ -44,20 +54,47 @@ export class LayerDrag {
     return this.latest.idle();
   }
 
-  async commit(): Promise<void> {
+  commit(): Promise<void> {
+    return this.letGo(this.keep());
+  }
+
+  cancel(): Promise<void> {
+    return this.letGo(this.drop());
+  }
+
+  private letGo(last: Promise<void>): Promise<void> {
+    if (held === this) held = null;
+    return (ending = last);
+  }
+
+  private async keep(): Promise<void> {
+    await this.begun;
     await this.latest.idle();
     if (!this.ended) await this.studio.ask(`${this.prefix}.commit`);
     this.ended = true;
   }
 
-  async cancel(): Promise<void> {
+  private async drop(): Promise<void> {
     this.latest.clear();
+    const was = this.ended;
     this.ended = true;
-    await this.studio.ask(`${this.prefix}.cancel`);
+    if (!was) await this.studio.ask(`${this.prefix}.cancel`);
+  }
+
+  /** Ask for a move; where the server has given the drag up, that is told once. */
+  private async asked(job: Job): Promise<Frame | null> {
+    try {
+      return await this.studio.session.ask(`${this.prefix}.move`, job.values, job.arrays);
+    } catch (error) {
+      if (error instanceof CommandError && error.kind === "DragOver") this.ended = true;
+      this.studio.tell(error);
+      return null;
+    }
   }
 
   private async send(job: Job): Promise<void> {
-    const answer = await this.studio.ask(`${this.prefix}.move`, job.values, job.arrays);
+    if (this.ended) return;
+    const answer = await this.asked(job);
     if (!answer || this.ended) return;
     const { arrays, head } = answer;
     if (arrays["index"]) this.index = arrays["index"];

@@ -266,6 +266,7 @@ export class PointsMode implements Mode {
       this.motion = this.grip = null;
       void this.drag?.cancel();
       this.drag = null;
+      this.gizmo?.cancel();
       this.handles?.move();
     } else this.points?.choose([], "only");
     this.look();

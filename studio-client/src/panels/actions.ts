@@ -2,6 +2,7 @@
 
 import { save } from "../core/files";
 import { t } from "../core/strings";
+import { dragEnded, dragInHand } from "../modes/layer_drag";
 import type { Studio } from "../studio";
 import { openMenu } from "./deformer_menu";
 import { openExport } from "./export_dialog";
@@ -17,11 +18,18 @@ export class Actions {
   ) {}
 
   undo(): void {
-    void this.studio.ask("history.undo");
+    void this.go("history.undo");
   }
 
   redo(): void {
-    void this.studio.ask("history.redo");
+    void this.go("history.redo");
+  }
+
+  /** What is in hand is given up, and nothing else; what was let go of just now is an entry first. */
+  private async go(command: string): Promise<void> {
+    if (dragInHand() && this.studio.mode.value?.key?.(new KeyboardEvent("keydown", { key: "Escape" }))) return;
+    await dragEnded();
+    await this.studio.ask(command);
   }
 
   home(): void {

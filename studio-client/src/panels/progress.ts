@@ -1,7 +1,7 @@
 // Long work: what is being done, how far it is, and a way to stop it.
 
 import { h } from "../core/dom";
-import { t } from "../core/strings";
+import { t, tWord } from "../core/strings";
 import type { Session } from "../transport/session";
 import { iconButton } from "./controls";
 
@@ -19,7 +19,7 @@ export class Progress {
   constructor(session: Session) {
     session.on("progress", ({ head }) => {
       const { job, title, part, cancellable } = head as { job: string; title: string; part: number | null; cancellable: boolean };
-      const bar = this.jobs.get(job) ?? this.begin(title, cancellable ? () => void session.ask("job.cancel", { job }) : undefined);
+      const bar = this.jobs.get(job) ?? this.begin(tWord("job_", title), cancellable ? () => void session.ask("job.cancel", { job }) : undefined);
       this.jobs.set(job, bar);
       bar.show(part);
     });

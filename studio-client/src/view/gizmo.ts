@@ -78,7 +78,14 @@ export class Gizmo {
 
   /** Let go without finishing. */
   cancel(): void {
-    this.controls.reset();
+    const { controls } = this;
+    if (!controls.dragging) return;
+    controls.reset();
+    controls.dragging = false;
+    controls.axis = null;
+    const orbit = this.viewport.cameras.controls;
+    orbit.enabled = false; // the button is still down: it does not go on with turning the view
+    addEventListener("pointerup", () => (orbit.enabled = true), { once: true });
   }
 
   dispose(): void {
@@ -92,7 +99,10 @@ export class Gizmo {
     controls.setSize(0.85);
     controls.setColors("#d93a50", "#2f9a4a", "#2f6be0", "#f2a53c");
     controls.addEventListener("change", () => this.viewport.request());
-    controls.addEventListener("objectChange", () => this.onMove(this.matrix()));
+    controls.addEventListener("objectChange", () => {
+      if (controls.mode === "scale" && controls.axis === "XYZ") this.anchor.scale.setScalar(this.swelling());
+      this.onMove(this.matrix());
+    });
     controls.addEventListener("dragging-changed", (event) => {
       this.viewport.cameras.controls.enabled = !event.value;
       if (event.value) {
@@ -106,6 +116,13 @@ export class Gizmo {
   /** Follow the camera that is in use. */
   useCamera(): void {
     this.controls.camera = this.viewport.cameras.active;
+  }
+
+  /** By its middle it doubles a ring's radius to the right or above, and halves as far to the left or below. */
+  private swelling(): number {
+    const { pointStart, pointEnd } = this.controls as unknown as { pointStart: Vector3; pointEnd: Vector3 };
+    const { x, y } = pointEnd.clone().sub(pointStart).applyQuaternion(this.viewport.cameras.active.quaternion.clone().invert());
+    return 2 ** ((x + y) / this.radius(this.anchor.position));
   }
 
   /** What has happened to the anchor since the drag began, as a map of space. */

@@ -1,6 +1,6 @@
 // What is picked, and whose it is: a layer's, or nobody's yet.
 
-import { Box3, Vector3 } from "three";
+import { Box3, Quaternion, Vector3 } from "three";
 import type { Studio } from "../../studio";
 import type { Layer } from "../../transport/protocol";
 import { IN_HANDLE } from "../../view/marks";
@@ -17,7 +17,10 @@ export class Chosen {
   own: string | null = null;
   /** While somebody drags, what is picked stays. */
   busy: () => boolean = () => false;
+  /** While another method is being bound, the one that is chosen stays. */
+  waits: () => boolean = () => false;
   private asked: string | null = null;
+  private mesh: number | null = null; // whose vertices are picked
   private readonly edge = new RegionEdge();
 
   constructor(
@@ -34,6 +37,14 @@ export class Chosen {
     return layer && KINDS.includes(layer.kind) ? layer : null;
   }
 
+  /** The layer whose region this is, where it is muted or another one is alone: what it does is not seen. */
+  get unseen(): string | null {
+    const layers = this.studio.scene?.layers ?? [];
+    const layer = layers.find(({ name }) => name === this.own);
+    const alone = layers.some(({ solo }) => solo);
+    return layer && (layer.muted || (alone && !layer.solo)) ? layer.name : null;
+  }
+
   /** The middle of the handle, as it is drawn. */
   get pivot(): Vector3 | null {
     const handle = this.region.indices("handle");
@@ -48,6 +59,13 @@ export class Chosen {
     return this.edge.middle(this.region, this.studio.mesh) ?? this.pivot;
   }
 
+  /** How the axes of a limb lie: the third from the joint to the handle. */
+  get limb(): Quaternion | null {
+    const { joint, pivot } = this;
+    const along = joint && pivot && pivot.clone().sub(joint);
+    return along?.length() ? new Quaternion().setFromUnitVectors(new Vector3(0, 0, 1), along.normalize()) : null;
+  }
+
   get box(): Box3 | null {
     const box = new Box3();
     for (const vertex of this.region.indices("region")) box.expandByPoint(this.at(vertex));
@@ -58,12 +76,15 @@ export class Chosen {
     return (this.region.marks[vertex]! & IN_HANDLE) !== 0;
   }
 
-  /** Another shape: nothing is picked. */
+  /** Another shape: nothing is picked, and the region is first. */
   begin(): void {
     const count = this.studio.mesh.pointCount;
-    if (this.region.marks.length === count) return;
+    const mesh = this.studio.scene?.mesh?.id ?? null;
+    if (this.region.marks.length === count && this.mesh === mesh) return;
+    this.mesh = mesh;
     this.region = new Region(count);
     this.own = null;
+    this.tools.change({ part: "region" });
   }
 
   /** This layer has been made of it. */
@@ -86,7 +107,7 @@ export class Chosen {
     const { region, handle } = answer.arrays;
     this.region = Region.of(this.studio.mesh.pointCount, region as Uint32Array, handle as Uint32Array);
     this.own = layer.name;
-    this.tools.change({ method: answer.head["method"] as Method });
+    if (!this.waits()) this.tools.change({ method: answer.head["method"] as Method });
     this.changed();
   }
 
@@ -110,6 +131,10 @@ export class Chosen {
         this.painted();
       },
       end: () => this.leaveLayer(),
+      drop: () => {
+        if (before.length === this.region.marks.length) this.region.restore(before);
+        this.changed();
+      },
     };
   }
 

@@ -32,7 +32,7 @@ export class Convergence {
 
   /** The handle is released: an iteration that was under way is finished elsewhere, unseen. */
   end(): void {
-    if (!this.converged) this.element.hidden = true;
+    if (!this.converged) this.begin();
   }
 
   /** The energies of one answer: at its beginning, and after each iteration. */

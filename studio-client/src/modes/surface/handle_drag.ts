@@ -2,12 +2,13 @@
 
 import { Matrix4, Plane, Vector3 } from "three";
 import type { Studio } from "../../studio";
-import type { Numbers } from "../../transport/frame";
+import type { Frame, Numbers } from "../../transport/frame";
 import { Gizmo } from "../../view/gizmo";
 import type { Viewport } from "../../view/viewport";
 import { LayerDrag } from "../layer_drag";
 import type { Pointer } from "../mode";
 import type { Convergence } from "./convergence";
+import type { MethodSwitch } from "./method_switch";
 import type { Chosen } from "./chosen";
 import type { SurfaceToolbar } from "./tools";
 
@@ -23,6 +24,7 @@ export class HandleDrag {
     private readonly tools: SurfaceToolbar,
     private readonly chosen: Chosen,
     private readonly convergence: Convergence,
+    private readonly switching: MethodSwitch,
     /** The skeleton has gone along. */
     private readonly carried: (points: Numbers) => void,
   ) {}
@@ -59,19 +61,29 @@ export class HandleDrag {
 
   place(): void {
     const { mover, now } = this.tools;
-    const swings = now.method === "skeleton" && mover !== "translate"; // the handle's own turns mean nothing to it
-    const at = mover && (swings ? this.chosen.joint : this.chosen.pivot);
+    const swings = now.method === "skeleton" && mover !== "translate"; // it sees what the handle does about the joint
+    const at = mover === null || this.chosen.unseen !== null ? null : swings ? this.chosen.joint : this.chosen.pivot;
+    const turn = swings ? this.chosen.limb : null;
     for (const gizmo of this.gizmos) {
       gizmo.useCamera();
-      gizmo.place(at);
+      gizmo.place(at, turn);
     }
+  }
+
+  /** A place on the ring that twists a limb. */
+  get ring(): Vector3 | null {
+    const [gizmo] = this.gizmos;
+    const { joint, limb } = this.chosen;
+    if (!gizmo || !joint || !limb) return null;
+    const along = new Vector3(0, 0, 1).applyQuaternion(limb);
+    return joint.add(along.cross(this.studio.viewport.cameras.direction()).setLength(gizmo.radius(joint)));
   }
 
   /** The pointer takes hold of the handle itself, to move it in the plane of the view. */
   take(pointer: Pointer): boolean {
     const { mesh, viewport } = this.studio;
     const hit = mesh.object.visible && viewport.ray(pointer.x, pointer.y).intersectObject(mesh.target, false)[0];
-    if (!hit || !hit.face || this.tools.mover !== "translate") return false;
+    if (!hit || !hit.face || this.tools.mover !== "translate" || this.chosen.unseen !== null) return false;
     const { a, b, c } = hit.face;
     if (![a, b, c].some((vertex) => this.chosen.holds(mesh.pointOf(vertex)))) return false;
     const plane = new Plane().setFromNormalAndCoplanarPoint(viewport.cameras.direction(), hit.point);
@@ -103,6 +115,7 @@ export class HandleDrag {
   cancel(): void {
     void this.drag?.cancel();
     this.drag = this.grab = null;
+    this.convergence.begin();
     for (const gizmo of this.gizmos) gizmo.cancel();
   }
 
@@ -118,7 +131,8 @@ export class HandleDrag {
     this.matrix = null;
     const begin = { layer: own ?? "", method: this.tools.now.method };
     const structure = own === null ? { region: region.indices("region"), handle: region.indices("handle") } : {};
-    this.drag = new LayerDrag(this.studio, "surface", begin, (arrays) => this.answered(arrays), structure);
+    this.drag = new LayerDrag(this.studio, "surface", begin, (arrays, head) => this.answered(arrays, head), structure);
+    void this.drag.begun.then((answer) => answer && this.switching.take(answer.head));
   }
 
   private put(matrix: Matrix4): void {
@@ -127,12 +141,13 @@ export class HandleDrag {
   }
 
   /** What an answer says beside the points; where an iteration has not converged, it goes on. */
-  private answered(arrays: Record<string, Numbers>): void {
+  private answered(arrays: Record<string, Numbers>, head: Frame["head"]): void {
+    this.switching.take(head);
     if (arrays["skeleton"]) this.carried(arrays["skeleton"]);
-    if (!arrays["energies"]) return;
+    if (!arrays["energies"] || !this.drag) return;
     const converged = arrays["converged"]![0] === 1;
     this.convergence.add(arrays["energies"], converged);
-    if (!converged && this.drag && this.matrix) this.send();
+    if (!converged && this.matrix) this.send();
   }
 
   private async finish(): Promise<void> {
@@ -140,9 +155,12 @@ export class HandleDrag {
     this.drag = null; // an iteration goes no further: the server finishes it
     this.convergence.end();
     if (!drag) return;
+    const { waits } = this.switching;
+    const kept = drag.commit();
     const layer = (await drag.begun)?.head["layer"] as string | undefined;
-    await drag.commit();
+    await kept;
     if (layer !== undefined) this.chosen.adopt(layer);
+    if (waits && this.chosen.own !== null) await this.switching.exchange(this.chosen.own, this.tools.now.method);
     await this.chosen.load();
   }
 }

@@ -9,6 +9,7 @@ import { registerMode, type Mode, type Pointer } from "../mode";
 import { Chosen } from "./chosen";
 import { Convergence } from "./convergence";
 import { HandleDrag } from "./handle_drag";
+import { MethodSwitch } from "./method_switch";
 import { NodePicking } from "./node_picking";
 import { SurfacePanel } from "./panel";
 import { Picking } from "./picking";
@@ -27,6 +28,7 @@ export class SurfaceMode implements Mode {
   readonly tour = surfaceTour;
   private readonly tools = new SurfaceToolbar();
   private readonly chosen: Chosen;
+  private readonly switching: MethodSwitch;
   private readonly handle: HandleDrag;
   private readonly convergence = new Convergence();
   private readonly skeleton: SkeletonShow;
@@ -36,13 +38,17 @@ export class SurfaceMode implements Mode {
   private stops: (() => void)[] = [];
 
   constructor(private readonly studio: Studio) {
+    this.switching = new MethodSwitch(studio, this.tools);
     this.chosen = new Chosen(studio, this.tools, () => this.paint(), () => this.look());
-    this.handle = new HandleDrag(studio, this.tools, this.chosen, this.convergence, (points) => this.skeleton.follow(points));
+    this.handle = new HandleDrag(studio, this.tools, this.chosen, this.convergence, this.switching, (points) => this.skeleton.follow(points));
+    this.switching.onEnd = () => this.switched();
+    this.switching.job.onChange(() => this.look());
+    this.chosen.waits = () => this.switching.waits;
     this.chosen.busy = () => this.handle.active;
     this.skeleton = new SkeletonShow(studio, this.onSkeleton(), () => this.showGizmos());
     this.nodes = new NodePicking(this.skeleton, this.tools, this.chosen.picked());
     const { chosen } = this;
-    this.side = new SurfacePanel(studio, this.tools, this.skeleton, this.convergence, {
+    this.side = new SurfacePanel(studio, this.tools, this.skeleton, this.convergence, this.switching, {
       grow: (rings) => void chosen.grow(rings),
       clear: () => chosen.clear(),
       keep: (name) => void studio.ask("surface.keep", { name }, { index: chosen.region.indices(this.tools.now.part) }),
@@ -70,6 +76,7 @@ export class SurfaceMode implements Mode {
     energies: () => [...this.convergence.energies],
     pivot: () => this.onPage(this.chosen.pivot),
     joint: () => this.onPage(this.chosen.joint),
+    ring: () => this.onPage(this.handle.ring),
     node: (index: number) => this.nodeOnPage(index),
     nodes: () => [...this.skeleton.points],
     groups: () => [...this.skeleton.groups],
@@ -116,7 +123,7 @@ export class SurfaceMode implements Mode {
   down(pointer: Pointer): boolean {
     const [gizmo] = this.handle.gizmos;
     gizmo?.useCamera();
-    if (gizmo?.hot) return false;
+    if (!this.studio.scene?.mesh?.faces || gizmo?.hot) return false;
     const over = this.skeleton.choice.where === "over";
     if (over && this.nodes.down(pointer, this.studio.mesh.object.visible)) return true;
     return this.tools.picker ? this.picking!.down(pointer) : this.handle.take(pointer);
@@ -153,6 +160,7 @@ export class SurfaceMode implements Mode {
   }
 
   private begin(): void {
+    this.convergence.begin();
     this.chosen.begin();
     this.skeleton.forget();
     void this.skeleton.load();
@@ -178,7 +186,14 @@ export class SurfaceMode implements Mode {
     this.convergence.begin();
     if (method === "skeleton") this.skeleton.prepare();
     if (this.handle.active) this.handle.send();
-    else if (this.chosen.own !== null) void this.studio.ask("surface.method", { layer: this.chosen.own, method });
+    else if (this.chosen.own !== null) void this.switching.exchange(this.chosen.own, method);
+    else this.look();
+  }
+
+  /** Another method is there, or given up: the drag asks again, or the layer tells which it has. */
+  private switched(): void {
+    if (this.handle.active) this.handle.send();
+    else if (this.picking && this.chosen.own !== null) void this.chosen.load();
   }
 
   private nextPlace(): void {
@@ -188,7 +203,7 @@ export class SurfaceMode implements Mode {
 
   private escape(): void {
     if (this.handle.active) this.handle.cancel();
-    else if (!this.picking?.cancel()) this.chosen.clear();
+    else if (!this.nodes.cancel() && !this.picking?.cancel()) this.chosen.clear();
     this.look();
   }
 
@@ -235,6 +250,7 @@ export class SurfaceMode implements Mode {
     if (!this.picking) return;
     this.studio.mesh.setMarks(this.chosen.region.marks);
     this.skeleton.paint(this.chosen.region.marks);
+    this.side.count(this.chosen.region);
   }
 
   /** Colours, gizmo and panel follow what is picked. */
@@ -243,7 +259,7 @@ export class SurfaceMode implements Mode {
     this.paint();
     this.handle.place();
     const other = this.chosen.own === null ? (this.chosen.layer?.name ?? null) : null;
-    this.side.show(this.chosen.region, this.chosen.own, other);
+    this.side.show(this.chosen.region, this.chosen.own, other, this.chosen.unseen !== null);
     this.studio.viewport.request();
   }
 

@@ -1,11 +1,13 @@
 // Another method for the edit in hand: on a large mesh it is bound in the background, and the edit goes on meanwhile.
 
+import { Signal } from "../../core/signal";
 import type { Studio } from "../../studio";
 import type { Frame } from "../../transport/frame";
 import type { Method, SurfaceToolbar } from "./tools";
 
 export class MethodSwitch {
-  private job: string | null = null;
+  /** What binds it; null = nothing. */
+  readonly job = new Signal<string | null>(null);
   /** It is bound, or nobody waits for it any more. */
   onEnd: () => void = () => undefined;
 
@@ -14,15 +16,15 @@ export class MethodSwitch {
     private readonly tools: SurfaceToolbar,
   ) {
     studio.session.on("progress-end", ({ head }) => {
-      if (head["job"] !== this.job) return;
-      this.job = null;
+      if (head["job"] !== this.job.value) return;
+      this.job.set(null);
       this.onEnd();
     });
   }
 
   /** Whether the method that is chosen is still being bound. */
   get waits(): boolean {
-    return this.job !== null;
+    return this.job.value !== null;
   }
 
   /** Exchange a layer's method. */
@@ -34,7 +36,7 @@ export class MethodSwitch {
 
   /** What an answer says of it; where it was given up, the method before is chosen again. */
   take(head: Frame["head"]): void {
-    this.job = (head["job"] as string | undefined) ?? null;
+    this.job.set((head["job"] as string | undefined) ?? null);
     if (head["given_up"] === this.tools.now.method) this.tools.change({ method: head["method"] as Method });
   }
 }

@@ -46,6 +46,15 @@ export class NodePicking {
     return true;
   }
 
+  /** Give a pick up; false where there is none. */
+  cancel(): boolean {
+    if (!this.active) return false;
+    this.active.outline.dispose();
+    this.active = null;
+    this.picked.drop();
+    return true;
+  }
+
   private update(pointer: Pointer): void {
     const nodes = this.found(pointer);
     if (nodes) this.picked.show(this.show.vertices(nodes));

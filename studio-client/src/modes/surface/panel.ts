@@ -5,6 +5,7 @@ import { t } from "../../core/strings";
 import { button, checkbox, iconButton, numberField, row, segments } from "../../panels/controls";
 import type { Studio } from "../../studio";
 import type { Convergence } from "./convergence";
+import type { MethodSwitch } from "./method_switch";
 import type { Part, Region } from "./region";
 import type { SkeletonChoice, SkeletonShow, Where } from "./skeleton_show";
 import { METHODS, type Method, type SurfaceToolbar } from "./tools";
@@ -25,22 +26,28 @@ export interface SurfaceActions {
 
 export class SurfacePanel {
   readonly element = h("div", { class: "surface-panel" });
+  private readonly numbers = { region: h("strong"), handle: h("strong") };
 
   constructor(
     private readonly studio: Studio,
     private readonly tools: SurfaceToolbar,
     private readonly skeleton: SkeletonShow,
     private readonly convergence: Convergence,
+    private readonly switching: MethodSwitch,
     private readonly actions: SurfaceActions,
   ) {}
 
-  /** What is picked, and whose it is: a layer's, or nobody's yet; `other` is the layer that could take it. */
-  show(region: Region, own: string | null, other: string | null): void {
+  /** What is picked, and whose it is: a layer's (seen or not), or nobody's yet; `other` is the layer that could take it. */
+  show(region: Region, own: string | null, other: string | null, unseen: boolean): void {
     const typed = this.element.contains(document.activeElement) && document.activeElement instanceof HTMLInputElement;
     if (typed && document.activeElement!.getAttribute("aria-label") === t("selectionName")) return;
+    if (!this.studio.scene?.mesh?.faces) {
+      replace(this.element, h("p", { class: "muted" }, t("needsFaces")));
+      return;
+    }
     replace(
       this.element,
-      this.counts(region),
+      this.counts(),
       h(
         "div",
         { class: "button-row" },
@@ -49,8 +56,9 @@ export class SurfacePanel {
         button(t("clear"), () => this.actions.clear()),
       ),
       row(t("method"), segments(METHODS.map(([name, title]) => [name, t(title)] as const), this.tools.now.method, this.actions.method)),
+      this.switching.waits && h("p", { class: "muted", role: "status" }, t("methodComing")),
       this.convergence.element,
-      this.whose(own, other),
+      ...this.next(region, own, other, unseen),
       h("h4", null, t("namedSelections")),
       this.named(),
       h("h4", null, t("skeleton")),
@@ -58,25 +66,34 @@ export class SurfacePanel {
     );
   }
 
-  private counts(region: Region): HTMLElement {
+  /** How much is picked, also while it is being picked. */
+  count(region: Region): void {
+    for (const part of ["region", "handle"] as const) this.numbers[part].textContent = grouped(region.count(part));
+  }
+
+  private counts(): HTMLElement {
     const line = (part: Part, label: string): HTMLElement =>
-      h("p", { class: `mark-count ${part}` }, h("i"), h("span", null, label), h("strong", null, grouped(region.count(part))));
+      h("p", { class: `mark-count ${part}` }, h("i"), h("span", null, label), this.numbers[part]);
     return h("div", { class: "mark-counts" }, line("region", t("region")), line("handle", t("handlePart")));
   }
 
-  private whose(own: string | null, other: string | null): HTMLElement {
-    if (own !== null) return h("p", { class: "muted" }, `${t("dragsLayer")} «${own}»`);
-    if (other === null) return h("p", { class: "muted" }, t("dragMakesLayer"));
+  /** What there is to do next, and whose it will be. */
+  private next(region: Region, own: string | null, other: string | null, unseen: boolean): HTMLElement[] {
+    const says = (text: string): HTMLElement => h("p", { class: "muted" }, text);
+    if (own !== null) return [says(unseen ? `«${own}» ${t("layerUnseen")}` : `${t("dragsLayer")} «${own}»`)];
+    const handle = region.count("handle");
+    const missing = !region.count("region") ? "firstRegion" : !handle ? "thenHandle" : null;
+    const alone = handle > 0 && handle === region.count("region");
+    return [says(t(missing ?? (alone ? "onlyHandle" : "dragMakesLayer"))), ...(other === null ? [] : [this.choice(other, missing === null)])];
+  }
+
+  /** Give what is picked to a layer, or take the layer's own back. */
+  private choice(layer: string, whole: boolean): HTMLElement {
     return h(
       "div",
-      null,
-      h("p", { class: "muted" }, t("dragMakesLayer")),
-      h(
-        "div",
-        { class: "button-row" },
-        button(`${t("giveTo")} «${other}»`, () => this.actions.give()),
-        button(t("back"), () => this.actions.back(), { kind: "quiet" }),
-      ),
+      { class: "button-row" },
+      whole && button(`${t("giveTo")} «${layer}»`, () => this.actions.give()),
+      button(`${t("back")} «${layer}»`, () => this.actions.back(), { kind: "quiet" }),
     );
   }
 

@@ -21,11 +21,14 @@ export interface Picked {
   /** These too. */
   more: (indices: Iterable<number>) => void;
   end: () => void;
+  /** It is given up: all is as it was before it began. */
+  drop: () => void;
 }
 
 export class Picking {
   private readonly outline: Outline;
   private active: { tool: Picker; from: Pointer; places: number[]; how: Merge } | null = null;
+  private round = 0; // answers to picks that were given up are of an earlier one
   private sent = 0; // places of the stroke that have been asked for
   private readonly strokes = new Latest<null>(() => this.stroke());
   private distances: Float32Array | null = null;
@@ -89,10 +92,13 @@ export class Picking {
   }
 
   cancel(): boolean {
-    const was = this.active !== null;
-    this.active = null;
+    const { active } = this;
+    if (!active) return false;
+    this.active = this.distances = null;
+    this.round++;
     this.outline.clear();
-    return was;
+    if (active.tool === "brush" || active.tool === "geodesic") this.picked.drop();
+    return true;
   }
 
   private ring(pointer: Pointer): void {
@@ -119,8 +125,9 @@ export class Picking {
     this.sent = places.length;
     const { width, height } = this.studio.viewport.size;
     const { brush, visible } = this.tools.now;
+    const { round } = this;
     const found = await this.ask("surface.brush", { visible, wide: (2 * brush) / width, high: (2 * brush) / height }, { path });
-    if (found) this.picked.more(found);
+    if (found && round === this.round) this.picked.more(found);
   }
 
   private async finishStroke(places: number[]): Promise<void> {
@@ -141,7 +148,9 @@ export class Picking {
     this.center = at(nearest);
     this.distances = null;
     this.radius = CLICKED * (this.studio.scene?.mesh?.diagonal ?? 1);
+    const round = ++this.round;
     void this.studio.ask("surface.distances", {}, { index: Uint32Array.of(start) }).then((answer) => {
+      if (round !== this.round) return;
       this.distances = (answer?.arrays["distances"] as Float32Array | undefined) ?? null;
       this.showReach();
       if (!this.active) this.finishReach();

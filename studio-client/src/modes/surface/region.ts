@@ -51,6 +51,11 @@ export class Region {
     if (how === "only" && part === "region") this.keepHandleInside();
   }
 
+  restore(marks: Uint8Array): void {
+    this.version++;
+    this.marks.set(marks);
+  }
+
   clear(part: Part): void {
     const lost = part === "region" ? IN_REGION : IN_HANDLE;
     this.version++;

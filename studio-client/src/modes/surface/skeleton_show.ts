@@ -52,7 +52,7 @@ export class SkeletonShow {
   /** Fetch it as the shape is now; where it is not known yet, an event brings it. */
   async load(): Promise<void> {
     const { where, contours, eigenvectors } = this.choice;
-    if (where === "off" || !this.studio.scene?.mesh) return;
+    if (where === "off" || !this.studio.scene?.mesh?.faces) return;
     const answer = await this.studio.ask("surface.skeleton", { contours, eigenvectors });
     if (answer?.head["known"]) this.take(answer);
   }

@@ -1,0 +1,124 @@
+"""What people do by mistake: drags and picks that are given up leave no trace, and one drag is one entry."""
+
+import numpy as np
+
+from pliant.scene.scene import Scene
+from pliant.studio.examples.samples import bar
+
+PROBE = "window.pliantStudio.probes.surface"
+BAR = bar()
+END, LIMB = np.arange(59 * 40, 60 * 40), np.arange(40 * 40, 60 * 40)  # a handle at the end of a bar, and what bends
+
+
+def opened(launched, view):
+    """The end of the bar as a handle, recalled by name."""
+    scene = Scene(BAR, selections={"end": END, "limb": LIMB})
+    page = view(launched(scene))
+    page.drawn()
+    page.ask("window.pliantStudio.mode('surface')")
+    page.ask("window.pliantStudio.look(0.2, -1, 0.35)")
+    for part, name, count in (("region", "limb", len(LIMB)), ("handle", "end", len(END))):
+        page.page.get_by_role("button", name=f"Take as the {part}: {name}").click()
+        page.until(f"{PROBE}.count('{part}') === {count}")
+    page.page.locator("canvas").first.focus()
+    page.page.keyboard.press("g")
+    page.settled()
+    return page
+
+
+def place(page, name="pivot"):
+    at = page.ask(f"{PROBE}.{name}()")
+    return at["x"], at["y"]
+
+
+def held(page, by):
+    """Hold the middle of the gizmo, and wait until the shape has moved."""
+    before = page.ask("window.pliantStudio.latencies.length")
+    page.drag(place(page), by, release=False)
+    page.until(f"window.pliantStudio.latencies.length > {before}")
+
+
+def at_rest(page):
+    page.settled()
+    np.testing.assert_allclose(page.positions(len(BAR.points)), BAR.points, atol=1e-5)
+
+
+def test_a_drag_that_is_given_up_leaves_no_trace(launched, view):
+    page = opened(launched, view)
+    revision, (x, y) = page.session.revision, place(page)
+    for key in ("Escape", "Control+z"):  # what is in hand is given up, and nothing else
+        held(page, (-20, -90))
+        page.page.keyboard.press(key)
+        at_rest(page)
+        page.page.mouse.move(x + 80, y - 60, steps=3)  # the button is still down
+        page.page.mouse.up()
+        at_rest(page)
+        np.testing.assert_allclose(place(page), (x, y), atol=1)
+    assert page.session.revision == revision
+    assert page.page.locator(".toast").count() == 0
+    before = page.ask(f"{PROBE}.indices('region')")
+    page.page.keyboard.press("e")
+    vertex = page.ask(f"window.pliantStudio.vertex({20 * 40 + 35})")
+    page.page.get_by_role("radio", name="Region", exact=True).click()
+    page.drag((round(vertex["x"]), round(vertex["y"])), (40, 0), release=False)
+    page.until(f"{PROBE}.count('handle') === 0")
+    page.page.keyboard.press("Escape")
+    page.page.mouse.up()
+    assert page.ask(f"{PROBE}.indices('region')") == before
+    assert page.ask(f"{PROBE}.count('handle')") == len(END)
+
+
+def test_undo_right_after_a_drag_undoes_that_drag(launched, view):
+    page = opened(launched, view)
+    revision = page.session.revision
+    held(page, (-20, -90))
+    page.page.mouse.up()
+    page.page.keyboard.press("Control+z")  # the drag is not an entry yet
+    page.committed(revision + 1)
+    at_rest(page)
+    assert page.session.scene.stack.layers == ()
+    page.page.keyboard.press("Control+y")
+    page.committed(revision + 2)
+    made = page.session.scene.stack["Edit"].deformer
+    np.testing.assert_allclose(page.positions(len(BAR.points)), made(BAR).points, atol=1e-5)
+    assert page.ask(f"{PROBE}.own()") == "Edit"
+
+
+def test_the_middle_of_the_gizmo_scales_calmly_and_muted_edits_have_none(launched, view):
+    page = opened(launched, view)
+    page.page.keyboard.press("s")
+    page.settled()
+    revision, (x, y) = page.session.revision, place(page)
+    page.drag((x + 1, y), (45, 0))  # a pixel beside the middle
+    page.committed(revision)
+    goal, rest = page.session.scene.stack["Edit"].deformer.goal, BAR.points[END]
+    spread, before = (np.linalg.norm(each - each.mean(axis=0)) for each in (goal, rest))
+    assert 1.1 < spread / before < 3
+    page.page.get_by_role("button", name="Mute", exact=True).click()
+    page.committed(revision + 1)
+    revision = page.session.revision
+    page.page.keyboard.press("g")
+    page.settled()
+    page.drag(place(page), (0, -60))  # turns the view
+    page.settled()
+    assert page.session.revision == revision
+    assert page.session.scene.stack["Edit"].deformer.goal is goal
+    assert "is muted" in page.page.locator(".surface-panel").inner_text()
+
+
+def test_another_page_may_undo_what_this_one_holds(launched, view):
+    page = opened(launched, view)
+    page.page.get_by_label("Name of the selection").fill("kept")
+    revision = page.session.revision
+    page.page.keyboard.press("Enter")
+    page.committed(revision)
+    held(page, (-20, -90))
+    page.session.submit(page.session.go, 0).result()  # as the other page's history does
+    at_rest(page)
+    x, y = place(page)
+    page.page.mouse.move(x - 40, y - 60, steps=6)
+    page.page.locator(".toast", has_text="drag again").wait_for()
+    page.page.mouse.up()
+    at_rest(page)
+    assert page.page.locator(".toast").count() == 1
+    assert page.session.scene.stack.layers == ()
