@@ -3,6 +3,7 @@
 import numpy as np
 
 import pliant as pl
+from pliant.numerics.rigid.twists import twist_about
 from pliant.scene.scene import Scene
 from pliant.studio.examples.samples import bar
 from pliant.surface import regions
@@ -189,6 +190,7 @@ def test_the_skeleton_beside_the_mesh_is_picked_and_follows(launched, view):
     np.testing.assert_allclose(nodes, skeleton.following(now - BAR.points), atol=1e-9)
     page.picture("surface-skeleton")
     it_swings_about_its_joint(page, made, revision + 1)
+    it_is_twisted_about_itself(page, revision + 2)
     vertex = place(page, 5 * 40 + 35)
     clay = page.pixels(*vertex)[0, 0].astype(int)
     page.page.get_by_label("Mesh", exact=True).click()
@@ -215,3 +217,24 @@ def it_swings_about_its_joint(page, made, revision):
     expected = after(BAR).points
     np.testing.assert_allclose(page.positions(len(expected)), expected, atol=1e-5)
     page.picture("surface-swung")
+
+
+def it_is_twisted_about_itself(page, revision):
+    """The blue ring lies around the limb: dragged, it turns the handle where it is."""
+    before = page.session.scene.stack["Edit"].deformer
+    page.page.keyboard.press("z")
+    page.settled()
+    ring = page.ask(f"{PROBE}.ring()")
+    page.drag((ring["x"], ring["y"]), (30, 60), steps=6)
+    page.committed(revision)
+    after = page.session.scene.stack["Edit"].deformer
+    middle = before.goal.mean(axis=0)
+    np.testing.assert_allclose(after.goal.mean(axis=0), middle, atol=1e-6)
+    limb = middle - BAR.points[after.bind(BAR).constraints.belt].mean(axis=0)
+    angle, _ = twist_about(before.goal, after.goal, limb / np.linalg.norm(limb))
+    assert abs(angle) > 0.1
+    was, now = (np.linalg.norm(each.goal - middle, axis=1) for each in (before, after))
+    np.testing.assert_allclose(now, was, atol=1e-6)
+    expected = after(BAR).points
+    np.testing.assert_allclose(page.positions(len(expected)), expected, atol=1e-5)
+    page.picture("surface-twisted")
