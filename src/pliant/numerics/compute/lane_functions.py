@@ -13,7 +13,7 @@ from llvmlite import ir
 from numba.extending import intrinsic
 
 from pliant.numerics.compute.compiling import inlined
-from pliant.numerics.compute.lanes import WIDTH, lanes
+from pliant.numerics.compute.lane_type import VECTOR, WIDTH, lanes
 
 _ARCTAN = (
     *(1.0, -0.3333333333333312, 0.19999999999940302, -0.14285714279196723, 0.11111110742493366, -0.0909089674476956),
@@ -28,7 +28,6 @@ _TAN_EIGHTH = 0.41421356237309503  # tan(pi / 8)
 _EIGHTH, _QUARTER, _HALF = 0.7853981633974483, 1.5707963267948966, 3.141592653589793
 _ROOT_TWO, _LOG_TWO = 1.4142135623730951, 0.6931471805599453
 
-_VECTOR = ir.VectorType(ir.DoubleType(), WIDTH)
 _WORDS = ir.VectorType(ir.IntType(64), WIDTH)
 
 
@@ -48,7 +47,7 @@ def magnitude(_typing: Any, value: Any) -> Any:
 
     def generate(_context: Any, builder: Any, _signature: Any, args: Any) -> Any:
         bits = builder.and_(builder.bitcast(args[0], _WORDS), _words((1 << 63) - 1))
-        return builder.bitcast(bits, _VECTOR)
+        return builder.bitcast(bits, VECTOR)
 
     return lanes(lanes), generate
 
@@ -59,7 +58,7 @@ def with_sign(_typing: Any, value: Any, sign: Any) -> Any:
 
     def generate(_context: Any, builder: Any, _signature: Any, args: Any) -> Any:
         sign_bits = builder.and_(builder.bitcast(args[1], _WORDS), _words(-(1 << 63)))
-        return builder.bitcast(builder.or_(builder.bitcast(args[0], _WORDS), sign_bits), _VECTOR)
+        return builder.bitcast(builder.or_(builder.bitcast(args[0], _WORDS), sign_bits), VECTOR)
 
     return lanes(lanes, lanes), generate
 
@@ -70,7 +69,7 @@ def exponent(_typing: Any, value: Any) -> Any:
 
     def generate(_context: Any, builder: Any, _signature: Any, args: Any) -> Any:
         biased = builder.lshr(builder.bitcast(args[0], _WORDS), _words(52))
-        return builder.sitofp(builder.sub(biased, _words(1023)), _VECTOR)
+        return builder.sitofp(builder.sub(biased, _words(1023)), VECTOR)
 
     return lanes(lanes), generate
 
@@ -81,7 +80,7 @@ def mantissa(_typing: Any, value: Any) -> Any:
 
     def generate(_context: Any, builder: Any, _signature: Any, args: Any) -> Any:
         bits = builder.and_(builder.bitcast(args[0], _WORDS), _words((1 << 52) - 1))
-        return builder.bitcast(builder.or_(bits, _words(1023 << 52)), _VECTOR)
+        return builder.bitcast(builder.or_(bits, _words(1023 << 52)), VECTOR)
 
     return lanes(lanes), generate
 
@@ -92,7 +91,7 @@ def inverse_root_guess(_typing: Any, value: Any) -> Any:
 
     def generate(_context: Any, builder: Any, _signature: Any, args: Any) -> Any:
         halved = builder.lshr(builder.bitcast(args[0], _WORDS), _words(1))
-        return builder.bitcast(builder.sub(_words(0x5FE6EB50C7B537A9), halved), _VECTOR)
+        return builder.bitcast(builder.sub(_words(0x5FE6EB50C7B537A9), halved), VECTOR)
 
     return lanes(lanes), generate
 
