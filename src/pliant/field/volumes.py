@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import numpy as np
-from numpy.typing import NDArray
 
 from pliant.errors import InvalidMesh
 from pliant.mesh import Points, PolygonMesh
+from pliant.numerics.meshes.adjacency import half_edges
 from pliant.numerics.meshes.triangulation import polygon_normals
 
 
@@ -69,7 +69,7 @@ def unchecked_gradient(mesh: PolygonMesh) -> Points:
     sides = mesh.faces.lengths[filled]
     polygon = np.repeat(np.arange(len(sides)), sides)  # of each corner
     points = mesh.points - mesh.center
-    edges = _directed_edges(mesh)
+    edges = half_edges(mesh.faces)
     here, following = edges[:, 0], edges[:, 1]
     gradient = np.zeros_like(points)
     np.add.at(
@@ -101,19 +101,10 @@ def _require_closed(mesh: PolygonMesh) -> None:
 
 def _unbalanced_edges(mesh: PolygonMesh) -> tuple[int, int]:
     """How many edges one face alone uses, and how many others are used one way more often than the other."""
-    edges = _directed_edges(mesh)
+    edges = half_edges(mesh.faces)
     edges = edges[edges[:, 0] != edges[:, 1]]
     sign = np.where(edges[:, 0] < edges[:, 1], 1, -1)
     low, high = edges.min(axis=1).astype(np.int64), edges.max(axis=1)
     _, edge, count = np.unique(low * len(mesh.points) + high, return_inverse=True, return_counts=True)
     balance = np.bincount(edge.reshape(-1), weights=sign, minlength=len(count))
     return int((count == 1).sum()), int(((count > 1) & (balance != 0)).sum())
-
-
-def _directed_edges(mesh: PolygonMesh) -> NDArray[np.int32]:
-    """(c, 2) from each corner of a polygon to the next."""
-    flat, offsets = mesh.faces.flat, mesh.faces.offsets
-    filled = mesh.faces.lengths > 0
-    following = np.roll(flat, -1)
-    following[offsets[1:][filled] - 1] = flat[offsets[:-1][filled]]
-    return np.stack([flat, following], axis=1)

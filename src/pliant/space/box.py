@@ -5,8 +5,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pliant.errors import InvalidDeformer, InvalidTarget
-from pliant.mesh import PolygonMesh, as_points
+from pliant.errors import InvalidDeformer
+from pliant.mesh import PolygonMesh
+from pliant.space.axes import extent_along
 
 Floats = NDArray[np.float64]
 
@@ -34,11 +35,7 @@ def box_around(target: PolygonMesh | ArrayLike, axes: Floats, margin: float) -> 
     InvalidTarget
         No points.
     """
-    points = as_points(target)
-    if not len(points):
-        raise InvalidTarget("a lattice cannot wrap a shape without points")
-    along = points @ axes
-    low, high = along.min(axis=0), along.max(axis=0)
+    low, high = extent_along(target, axes)
     grown = margin * (high - low)
     return axes @ (low - grown), high - low + 2 * grown
 

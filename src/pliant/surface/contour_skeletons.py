@@ -11,6 +11,7 @@ from scipy.sparse import csr_array
 
 from pliant.errors import InvalidParameter
 from pliant.mesh import Points, PolygonMesh
+from pliant.numerics.meshes.adjacency import unique_edges
 from pliant.numerics.meshes.eigenpairs import lowest_eigenpairs
 from pliant.numerics.meshes.graphs import components, edge_graph, nearest_source
 from pliant.numerics.meshes.laplacians import cotangent_weights, laplacian, masses
@@ -110,7 +111,7 @@ def contour_skeleton(
     given = None if scalar is None else _scalar_of(mesh, scalar)
     groups, field = np.full(len(mesh.points), -1, np.int64), np.zeros(len(mesh.points))
     points, links, count = [], [], 0
-    label = components(edge_graph(mesh.points, _edges(mesh.triangles)))
+    label = components(edge_graph(mesh.points, unique_edges(Ragged.of(mesh.triangles))))
     for name in np.unique(label[mesh.triangles]):
         member = np.flatnonzero(label == name)
         place = np.full(len(mesh.points), -1)
@@ -148,11 +149,6 @@ def _scalar_of(mesh: PolygonMesh, scalar: ArrayLike | str) -> Floats:
     return values
 
 
-def _edges(triangles: NDArray[np.int32]) -> NDArray[np.int32]:
-    both = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
-    return np.unique(both[both[:, 0] != both[:, 1]], axis=0)
-
-
 @dataclass(frozen=True, eq=False)
 class _Piece:
     """One component: (n, 3) points, all of them used, and (t, 3) triangles."""
@@ -171,7 +167,7 @@ class _Piece:
             return self._one_group(field)
         levels = field.min() + span * np.arange(1, contours + 1) / (contours + 1)
         lines = isolines(self.triangles, field, levels)
-        edges = _edges(self.triangles)
+        edges = unique_edges(Ragged.of(self.triangles))
         seeds, loop = _first_claims(
             lines.edges, lines.loops, np.abs(field[lines.edges] - levels[lines.level][lines.loops, None])
         )

@@ -55,14 +55,25 @@ def image_of_grid(deformer: Deformer, path: Path) -> tuple[Image, tuple[str, ...
     UnsupportedFormat
         Another deformer.
     """
+    grid = required_grid(deformer, path, "an image of displacements")
+    image = Image(grid.displacements, grid.origin, grid.spacing, grid.axes)
+    same = grid.outside == "identity" and grid.rim == RIM
+    losses = () if same else ("the grid's border: readers let nothing move from half a voxel beyond it on",)
+    notes = (NOTE,) if grid.direction != "pull-back" else ()
+    return image, losses if np.any(grid.displacements) else (), notes
+
+
+def required_grid(deformer: Deformer, path: Path, holder: str) -> DisplacementGrid:
+    """The deformer, if it is what ``holder`` can hold: a linear displacement grid.
+
+    Raises
+    ------
+    UnsupportedFormat
+        Another deformer.
+    """
     if not isinstance(deformer, DisplacementGrid) or deformer.interpolation != "linear":
-        kind = type(deformer).__name__
         raise UnsupportedFormat(
-            f"{path}: an image of displacements holds a linear DisplacementGrid, not this {kind}: sample it with "
+            f"{path}: {holder} holds a linear DisplacementGrid, not this {type(deformer).__name__}: sample it with "
             "pliant.to_grid, or convert it with a refit"
         )
-    image = Image(deformer.displacements, deformer.origin, deformer.spacing, deformer.axes)
-    same = deformer.outside == "identity" and deformer.rim == RIM
-    losses = () if same else ("the grid's border: readers let nothing move from half a voxel beyond it on",)
-    notes = (NOTE,) if deformer.direction != "pull-back" else ()
-    return image, losses if np.any(deformer.displacements) else (), notes
+    return deformer

@@ -17,6 +17,7 @@ from pliant.deformer import Deformer, SpaceDeformer
 from pliant.errors import UnreadableFile, UnsupportedFormat
 from pliant.io.files import write_bytes
 from pliant.io.image_formats.orientation import split_matrix
+from pliant.io.map_formats.displacement_images import required_grid
 from pliant.io.map_formats.file_facts import FileFacts
 from pliant.io.map_formats.transform_options import ReadOptions
 from pliant.io.map_formats.words import require_usable, spaced
@@ -112,25 +113,20 @@ def write(deformer: Deformer, path: Path, *, strict: bool) -> LossReport:
     UnsupportedFormat
         Another deformer.
     """
-    if not isinstance(deformer, DisplacementGrid) or deformer.interpolation != "linear":
-        kind = type(deformer).__name__
-        raise UnsupportedFormat(
-            f"{path}: VTK's image data holds a linear DisplacementGrid, not this {kind}: sample it with "
-            "pliant.to_grid, or convert it with a refit"
-        )
-    goes_on = deformer.outside == "clamp" or not deformer.displacements.any()
+    grid = required_grid(deformer, path, "VTK's image data")
+    goes_on = grid.outside == "clamp" or not grid.displacements.any()
     losses = () if goes_on else ("that nothing moves beyond the grid: VTK lets its border go on",)
     refuse_losses(losses, path, strict=strict)
-    extent = " ".join(f"0 {n - 1}" for n in deformer.shape).encode()
-    values = np.ascontiguousarray(deformer.displacements.transpose(2, 1, 0, 3), "<f8").tobytes()
+    extent = " ".join(f"0 {n - 1}" for n in grid.shape).encode()
+    values = np.ascontiguousarray(grid.displacements.transpose(2, 1, 0, 3), "<f8").tobytes()
     head = (
         b'<?xml version="1.0"?>\n'
         b'<VTKFile type="ImageData" version="2.2" byte_order="LittleEndian" header_type="UInt64">\n'
         b'<ImageData WholeExtent="%b" Origin="%b" Spacing="%b" Direction="%b">\n<Piece Extent="%b">\n'
         b'<PointData Vectors="displacement">\n<DataArray type="Float64" Name="displacement" NumberOfComponents="3" '
         b'format="appended" offset="0"/>\n</PointData>\n</Piece>\n</ImageData>\n<AppendedData encoding="raw">\n_'
-    ) % (extent, spaced(deformer.origin), spaced(deformer.spacing), spaced(deformer.axes.reshape(-1)), extent)
+    ) % (extent, spaced(grid.origin), spaced(grid.spacing), spaced(grid.axes.reshape(-1)), extent)
     write_bytes(path, [head, struct.pack("<Q", len(values)), values, b"\n</AppendedData>\n</VTKFile>\n"])
-    pulled = deformer.direction != "push-forward"
+    pulled = grid.direction != "push-forward"
     notes = ("the direction is not stored: readers take the map as 'push-forward'",) if pulled else ()
     return LossReport(path, NAME, losses, notes)

@@ -65,31 +65,14 @@ def new_file(mesh: PolygonMesh, keeps: Keeps, path: Path) -> Encoded:
     points, rounding = as_float32(mesh.points, "glTF")
     losses += rounding
     attributes = _attributes(mesh, made, points[source], source, corner_of)
-    primitives = []
-    labels = mesh.materials
-    which = np.empty(0, np.int32) if labels is None else labels.indices[mesh.triangle_faces]
-    known = list(mesh.material_library)
+    labels, known = mesh.materials, list(mesh.material_library)
     if labels is not None:
         known += [name for name in labels.names if name not in known]
-    told = _scaled(mesh)
-    if (moved := int((np.sort(which, kind="stable") != which).sum())) > 0:
-        told += (f"the triangles of a material are put together: the order of {moved:,} is another",)
-    for label in np.unique(which).tolist() if len(which) else [-1] * bool(len(triangles)):
-        chosen = (triangles[which == label] if len(which) else triangles).astype(np.uint32).ravel()
-        said: dict[str, Any] = {"attributes": attributes, "indices": made.accessor(chosen, _ELEMENTS)}
-        if label >= 0 and labels is not None:
-            said["material"] = known.index(labels.names[label])
-        primitives.append(said)
-    if mesh.lines is not None:
-        first = np.ones(len(mesh.lines.flat), bool)
-        first[mesh.lines.offsets[1:][mesh.lines.lengths > 0] - 1] = False
-        at = np.flatnonzero(first)
-        if (longer := int((mesh.lines.lengths != 2).sum())) > 0:
-            losses.append(f"{longer:,} lines of more than two points are cut into segments")
-        ends = mesh.lines.flat[np.stack([at, at + 1], axis=1)].astype(np.uint32).ravel()
-        primitives.append({"attributes": attributes, "indices": made.accessor(ends, _ELEMENTS), "mode": 1})
-    if not primitives:
-        primitives.append({"attributes": attributes, "mode": 0})
+    surfaces, order = _surfaces(mesh, made, triangles, known)
+    lines, cut = _lines(mesh, made)
+    told = _scaled(mesh) + order
+    losses += cut
+    primitives = [{"attributes": attributes, **said} for said in surfaces + lines or [{"mode": 0}]]
     json: dict[str, Any] = {
         "asset": {"version": "2.0", "generator": "pliant"},
         "scene": 0,
@@ -135,6 +118,42 @@ def corners_of(mesh: PolygonMesh) -> NDArray[np.int64]:
     found = np.full(len(mesh.points), -1)
     found[mesh.faces.flat] = np.arange(len(mesh.faces.flat))
     return found
+
+
+def _surfaces(
+    mesh: PolygonMesh, made: _Building, triangles: NDArray[np.integer[Any]], known: list[str]
+) -> tuple[list[dict[str, Any]], tuple[str, ...]]:
+    """The (t, 3) triangles of each material, all of them where there is none; and that their order is another."""
+    labels = mesh.materials
+    if not len(triangles):
+        return [], ()
+    if labels is None:
+        return [{"indices": made.accessor(triangles.astype(np.uint32).ravel(), _ELEMENTS)}], ()
+    which = labels.indices[mesh.triangle_faces]
+    found = []
+    for label in np.unique(which).tolist():
+        said: dict[str, Any] = {
+            "indices": made.accessor(triangles[which == label].astype(np.uint32).ravel(), _ELEMENTS)
+        }
+        if label >= 0:
+            said["material"] = known.index(labels.names[label])
+        found.append(said)
+    moved = int((np.sort(which, kind="stable") != which).sum())
+    told = f"the triangles of a material are put together: the order of {moved:,} is another"
+    return found, (told,) if moved else ()
+
+
+def _lines(mesh: PolygonMesh, made: _Building) -> tuple[list[dict[str, Any]], list[str]]:
+    """The mesh's lines as segments, and that longer ones are cut."""
+    if mesh.lines is None:
+        return [], []
+    first = np.ones(len(mesh.lines.flat), bool)
+    first[mesh.lines.offsets[1:][mesh.lines.lengths > 0] - 1] = False
+    at = np.flatnonzero(first)
+    longer = int((mesh.lines.lengths != 2).sum())
+    ends = mesh.lines.flat[np.stack([at, at + 1], axis=1)].astype(np.uint32).ravel()
+    cut = [f"{longer:,} lines of more than two points are cut into segments"] if longer else []
+    return [{"indices": made.accessor(ends, _ELEMENTS), "mode": 1}], cut
 
 
 def _attributes(
