@@ -178,6 +178,22 @@ def test_whole_numbers_are_numbers(random):
     np.testing.assert_array_equal(kernel(points, points), same(points, points))
 
 
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("multi_scale(10, 1, levels=1e999)", "whole number of levels"),
+        ("multi_scale(10, 1, levels=2.5)", "whole number of levels"),
+        (f"multi_scale(10, 1, levels={10**400})", "is no kernel"),
+        (f"gaussian(sigma={10**400}, x=1)", "is no kernel"),
+        ("+".join(["gaussian(1, 1)"] * 2_000), "is no kernel"),
+    ],
+)
+def test_numbers_and_sums_beyond_reason_are_refused_in_a_line(text, words):
+    with pytest.raises(InvalidParameter, match=words) as caught:
+        parse_kernel(text)
+    assert len(str(caught.value)) < 250
+
+
 @pytest.mark.parametrize("scale", [1e300, 1e-300, 10**400, -1.0, np.nan, "wide"])
 def test_a_scale_whose_square_is_no_number_above_zero_is_refused(scale):
     with pytest.raises(InvalidParameter, match="above zero"):

@@ -11,6 +11,9 @@ from numpy.typing import NDArray
 
 from pliant.errors import InvalidMesh, InvalidParameter
 from pliant.mesh import PolygonMesh
+from pliant.numerics.meshes.adjacency import unique_edges
+from pliant.numerics.meshes.graphs import edge_graph, nearest_source
+from pliant.numerics.ragged import Ragged
 from pliant.shape.surface_samples import farthest
 
 
@@ -24,20 +27,13 @@ def decimated(mesh: PolygonMesh, count: int) -> tuple[PolygonMesh, NDArray[np.in
     InvalidMesh
         The mesh has no faces.
     """
-    from scipy.sparse import coo_array
-    from scipy.sparse.csgraph import dijkstra
-
     triangles, points = mesh.triangles, mesh.points
     if not len(triangles):
         raise InvalidMesh("a mesh without faces cannot be decimated: take the marginal of some of its points")
     if not 4 <= count <= len(points):
         raise InvalidParameter(f"the mesh has {len(points):,} vertices: it can be decimated to 4 of them at least")
     kept = np.sort(np.asarray(farthest(points, count, np.random.default_rng(0)), np.int64))
-    edges = np.concatenate([triangles[:, [0, 1]], triangles[:, [1, 2]], triangles[:, [2, 0]]])
-    edges = np.unique(np.sort(edges, axis=1), axis=0)
-    length = np.linalg.norm(points[edges[:, 0]] - points[edges[:, 1]], axis=1) + 1e-300
-    graph = coo_array((length, (edges[:, 0], edges[:, 1])), shape=(len(points), len(points))).tocsr()
-    _, _, source = dijkstra(graph, directed=False, indices=kept, min_only=True, return_predecessors=True)
+    _, source = nearest_source(edge_graph(points, unique_edges(Ragged.of(triangles))), kept)
     region = np.searchsorted(kept, np.maximum(source, 0))[triangles]
     whole = (source[triangles] >= 0).all(axis=1)
     whole &= (region[:, 0] != region[:, 1]) & (region[:, 1] != region[:, 2]) & (region[:, 2] != region[:, 0])

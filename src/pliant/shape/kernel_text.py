@@ -36,12 +36,11 @@ def parse_kernel(text: str) -> Kernel:
         Anything else; what was not understood is named.
     """
     try:
-        tree = ast.parse(text.strip(), mode="eval").body
-    except (SyntaxError, ValueError, RecursionError, MemoryError) as error:
-        raise InvalidParameter(f"{text!r} is no kernel, as in gaussian(sigma=50, scale=10)") from error
-    found = _evaluated(tree)
+        found = _evaluated(ast.parse(text.strip(), mode="eval").body)
+    except (SyntaxError, ValueError, OverflowError, RecursionError, MemoryError) as error:
+        raise InvalidParameter(f"{_short(text)} is no kernel, as in gaussian(sigma=50, scale=10)") from error
     if not isinstance(found, Kernel):
-        raise InvalidParameter(f"{text!r} is a number; a kernel is needed, as in gaussian(sigma=50, scale=10)")
+        raise InvalidParameter(f"{_short(text)} is a number; a kernel is needed, as in gaussian(sigma=50, scale=10)")
     return found
 
 
@@ -61,11 +60,15 @@ def _evaluated(node: ast.expr) -> Kernel | float:
             return _made(name, [_number(each) for each in arguments], {str(k.arg): _number(k.value) for k in named})
         case ast.Constant(value=int() | float()):
             return _number(node)
-    raise InvalidParameter(f"{ast.unparse(node)!r} is no kernel; there are: {', '.join(KERNELS)}, joined by + and *")
+    raise InvalidParameter(
+        f"{_short(ast.unparse(node))} is no kernel; there are: {', '.join(KERNELS)}, joined by + and *"
+    )
 
 
 def _made(name: str, values: list[float], named: dict[str, float]) -> Kernel:
     if "levels" in named:
+        if not float(named["levels"]).is_integer():
+            raise InvalidParameter(f"{name} has a whole number of levels, not {named['levels']:g}")
         named["levels"] = int(named["levels"])
     try:
         return KERNELS[name](*values, **named)
@@ -81,4 +84,9 @@ def _number(node: ast.expr) -> float:
             return value
         case ast.UnaryOp(op=ast.USub(), operand=ast.Constant(value=int() | float() as value)):
             return -value
-    raise InvalidParameter(f"{ast.unparse(node)!r} is not a number")
+    raise InvalidParameter(f"{_short(ast.unparse(node))} is not a number")
+
+
+def _short(text: str) -> str:
+    """A text as it is quoted in a message: no longer than a line."""
+    return repr(text if len(text) <= 80 else f"{text[:77]}...")

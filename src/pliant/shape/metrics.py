@@ -110,7 +110,6 @@ def specificity(
 
 
 def _onto(points: Floats, mean: Floats, *, scale: bool = False) -> Floats:
-
     return moved(aligning(points, mean, scale=scale), points)
 
 
