@@ -257,7 +257,13 @@ def checked_controls(controls: ArrayLike, shape: tuple[int, ...]) -> Controls:
 
 
 def checked_out(out: Points | None, count: int) -> Points:
-    """A buffer for (count, 3) results: the caller's, if it fits, or a new one."""
+    """A buffer for (count, 3) results: the caller's, if it fits, or a new one.
+
+    Raises
+    ------
+    InvalidTarget
+        Another shape, type or order, or a buffer that is read-only.
+    """
     if out is None:
         return np.empty((count, 3))
     if out.shape != (count, 3) or out.dtype != np.float64 or not out.flags.c_contiguous or not out.flags.writeable:

@@ -64,6 +64,11 @@ class Ledger:
         """Write an outcome down, for a run that goes on after this one was killed.
 
         It does not wait for the disk: what a loss of power takes from the end is only done again.
+
+        Raises
+        ------
+        UnwritableFile
+            There is no room for it.
         """
         line = {"job": self._key(job), **vars(outcome), "size": _size(job.output) if outcome.status == "ok" else None}
         del line["resumed"]

@@ -100,6 +100,11 @@ class Part:
         ----------
         deviation
             How far triangles may be from the surface, as part of the diagonal.
+
+        Raises
+        ------
+        InvalidTarget
+            The part has no faces.
         """
         box = kernel("Bnd").Bnd_Box()
         kernel("BRepBndLib").BRepBndLib.Add_s(self.shape, box)

@@ -139,7 +139,13 @@ def checked_spacing(spacing: float | ArrayLike) -> Points:
 
 
 def tick_count(low: float, high: float, step: float) -> int:
-    """How many positions fill an interval evenly, at most ``step`` apart."""
+    """How many positions fill an interval evenly, at most ``step`` apart.
+
+    Raises
+    ------
+    InvalidParameter
+        There would be more than 50 million.
+    """
     cells = (high - low) / step
     if cells > MOST_POINTS:
         raise InvalidParameter(f"a spacing of {step:g} cuts an extent of {high - low:g} into {cells:.3g}: enlarge it")

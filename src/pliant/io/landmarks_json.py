@@ -23,7 +23,13 @@ _PRETTY = orjson.OPT_INDENT_2 | orjson.OPT_APPEND_NEWLINE
 
 
 def read_json(path: Path, data: bytes) -> Landmarks:
-    """Scalismo's landmarks, or Slicer's where the file holds those."""
+    """Scalismo's landmarks, or Slicer's where the file holds those.
+
+    Raises
+    ------
+    UnreadableFile
+        No JSON, no list, or an entry without coordinates.
+    """
     content = _parsed(path, data)
     if isinstance(content, dict) and "markups" in content:
         return read_markups(path, data)
@@ -63,7 +69,13 @@ def scalismo(landmarks: Landmarks) -> Written:
 
 
 def read_markups(path: Path, data: bytes) -> Landmarks:
-    """All control points of all markups of a Slicer file whose position is defined."""
+    """All control points of all markups of a Slicer file whose position is defined.
+
+    Raises
+    ------
+    UnreadableFile
+        No JSON, no markups, or other coordinate systems than LPS or RAS.
+    """
     content = _parsed(path, data)
     markups = content.get("markups") if isinstance(content, dict) else None
     if not isinstance(markups, list) or not all(isinstance(markup, dict) for markup in markups):

@@ -17,7 +17,13 @@ _NAMES = {"name", "label", "id", "landmark"}
 
 
 def read_csv(path: Path, data: bytes) -> Landmarks:
-    """Rows of a name and three numbers, or of three numbers; a first row without numbers names the columns."""
+    """Rows of a name and three numbers, or of three numbers; a first row without numbers names the columns.
+
+    Raises
+    ------
+    UnreadableFile
+        No rows, or some without three numbers.
+    """
     rows = list(_rows(path, data))
     if not rows:
         raise UnreadableFile(path, "the file holds no landmarks", "each line needs a name, x, y and z")
@@ -53,7 +59,13 @@ def csv(landmarks: Landmarks) -> Written:
 
 
 def read_fcsv(path: Path, data: bytes) -> Landmarks:
-    """Slicer's fiducials; its versions before 4.11 wrote RAS, or 0 for it, and named the columns as later ones do."""
+    """Slicer's fiducials; its versions before 4.11 wrote RAS, or 0 for it, and named the columns as later ones do.
+
+    Raises
+    ------
+    UnreadableFile
+        Another coordinate system, or rows without three numbers.
+    """
     space: Space = "RAS"
     columns = _COLUMNS.split(",")
     for comment in (text[1:] for text in _text(path, data).splitlines() if text.startswith("#")):

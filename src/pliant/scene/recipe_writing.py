@@ -57,7 +57,13 @@ def write_recipe(
 def recipe_document(
     source: Stack | Clip, *, title: str = "", about: str = "", mesh: PolygonMesh | None = None
 ) -> dict[str, Any]:
-    """A stack or a clip as the document of a recipe, see :func:`write_recipe`."""
+    """A stack or a clip as the document of a recipe, see :func:`write_recipe`.
+
+    Raises
+    ------
+    InvalidParameter
+        The clip has a motion of its own.
+    """
     clip, stack = (source, source.stack) if isinstance(source, Clip) else (None, source)
     arrays: Arrays = {}
     data = stack_data(stack, arrays)

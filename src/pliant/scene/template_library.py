@@ -83,6 +83,11 @@ def save_template(
     -------
     Path
         Its file.
+
+    Raises
+    ------
+    InvalidParameter
+        A name of other letters, or a clip whose mesh has a motion of its own.
     """
     if not _NAME.fullmatch(name):
         raise InvalidParameter(f"{name!r} is no name of a template: use small letters, digits and hyphens")

@@ -23,7 +23,13 @@ class ChangeableModel(LinearModel):
     """A model that gives others."""
 
     def marginal(self, vertices: ArrayLike) -> Self:
-        """The model of some vertices (m,), with the faces that they span."""
+        """The model of some vertices (m,), with the faces that they span.
+
+        Raises
+        ------
+        InvalidParameter
+            A vertex that the model has not, or one that is named twice.
+        """
         chosen = self._indices(vertices)
         if len(np.unique(chosen)) != len(chosen):
             raise InvalidParameter("a vertex is named twice: a model has each once")
@@ -70,6 +76,11 @@ class ChangeableModel(LinearModel):
         ----------
         matrix
             (3, 4) or (4, 4), as :attr:`pliant.Affine.matrix` is.
+
+        Raises
+        ------
+        InvalidParameter
+            Another shape, or numbers that are not finite.
         """
         affine = np.asarray(matrix, np.float64)
         if affine.shape not in ((3, 4), (4, 4)) or not np.isfinite(affine).all():

@@ -28,6 +28,11 @@ def box(size: Any = (1.0, 1.0, 1.0), center: ArrayLike = (0.0, 0.0, 0.0), *, nam
         (3,) its middle.
     name
         What its faces are called in the groups of a mesh that it becomes a part of.
+
+    Raises
+    ------
+    InvalidParameter
+        Lengths that are not positive, or a center that is no three finite numbers.
     """
     extents = _lengths("size", size, 3)
     signs = np.array([[x, y, z] for z in (-1, 1) for y in (-1, 1) for x in (-1, 1)], np.float64)
@@ -50,6 +55,11 @@ def sphere(
         Edges around it, a multiple of four or rounded up to one.
     name
         As for :func:`box`.
+
+    Raises
+    ------
+    InvalidParameter
+        Lengths that are not positive, or fewer than 3 or more than 4,096 segments.
     """
     unit, faces = cube_sphere(_cells(segments))
     return _leaf(unit * _lengths("radius", radius, 1), faces, center, name)
@@ -75,6 +85,11 @@ def cylinder(
         Edges around it.
     name
         As for :func:`box`.
+
+    Raises
+    ------
+    InvalidParameter
+        As for :func:`sphere`.
     """
     r, h = _lengths("radius", radius, 1)[0], _lengths("height", height, 1)[0]
     points, faces = lathe(np.array([r, r]), np.array([-h / 2, h / 2]), _count(segments))
@@ -104,6 +119,11 @@ def cone(
         Edges around it.
     name
         As for :func:`box`.
+
+    Raises
+    ------
+    InvalidParameter
+        As for :func:`sphere`, or a radius at the top below zero.
     """
     r, h = _lengths("radius", radius, 1)[0], _lengths("height", height, 1)[0]
     if not 0 <= top < np.inf:
@@ -134,6 +154,11 @@ def torus(
         Edges around z; around the tube there are about as many a length.
     name
         As for :func:`box`.
+
+    Raises
+    ------
+    InvalidParameter
+        As for :func:`sphere`, or a tube as thick as the ring.
     """
     r, t = _lengths("radius", radius, 1)[0], _lengths("tube", tube, 1)[0]
     if t >= r:
@@ -168,6 +193,11 @@ def superquadric(
         Edges around it, a multiple of four or rounded up to one.
     name
         As for :func:`box`.
+
+    Raises
+    ------
+    InvalidParameter
+        As for :func:`sphere`, or exponents outside [0.05, 4].
     """
     half = _lengths("size", size, 3) / 2
     try:

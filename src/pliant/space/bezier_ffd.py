@@ -116,6 +116,13 @@ class BezierFFD(ControlLattice):
             (3, 3) orthonormal columns, for a box that stands askew.
         outside
             What happens to points outside the box.
+
+        Raises
+        ------
+        InvalidDeformer
+            A shape and patches at once, or an axis without control points.
+        InvalidTarget
+            No points.
         """
         if shape is not None and patches is not None:
             raise InvalidDeformer("give either a shape or numbers of patches: 3 patches + 1 is the shape")

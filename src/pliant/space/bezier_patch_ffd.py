@@ -96,6 +96,13 @@ class BezierPatchFFD(ControlLattice):
             How much to grow the patch on every side, as a part of its size.
         outside
             What happens to points beside it.
+
+        Raises
+        ------
+        InvalidDeformer
+            An unknown axis, or fewer than two control points along an edge.
+        InvalidTarget
+            No points.
         """
         if axis not in AXES:
             raise InvalidDeformer(f"axis is {axis!r}; it must be 'x', 'y' or 'z'")

@@ -118,6 +118,13 @@ class BSplineFFD(ControlLattice):
             (3, 3) orthonormal columns, for a lattice that stands askew.
         edge
             What stands beyond the last control points.
+
+        Raises
+        ------
+        InvalidDeformer
+            An axis without control points, or axes that are not orthonormal.
+        InvalidTarget
+            No points.
         """
         frame = checked_axes(axes)
         counts = np.array(shape)

@@ -159,5 +159,11 @@ class ARAPBinding(SurfaceBinding, IterativeBinding):
         raise NotDifferentiable("ARAP stops before its minimum: it has no exact derivative; use LaplacianEdit")
 
     def vjp(self, controls: ArrayLike | None, d_points: ArrayLike) -> Controls:
-        """Not offered, as :meth:`jvp`."""
+        """Not offered, as :meth:`jvp`.
+
+        Raises
+        ------
+        NotDifferentiable
+            Always.
+        """
         raise NotDifferentiable("ARAP stops before its minimum: it has no exact derivative; use LaplacianEdit")

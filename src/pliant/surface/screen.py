@@ -112,7 +112,13 @@ class SeenMesh:
         np.divide(clip[:, :3], clip[:, 3:], out=self._screen, where=self._ahead[:, None])
 
     def inside(self, outline: ArrayLike, *, visible: bool = False) -> Integers:
-        """The vertices inside a closed outline (k, 2), as :func:`in_lasso`."""
+        """The vertices inside a closed outline (k, 2), as :func:`in_lasso`.
+
+        Raises
+        ------
+        InvalidParameter
+            Fewer than three places, or numbers that are not finite.
+        """
         polygon = np.asarray(outline, np.float64)
         if polygon.ndim != 2 or polygon.shape[1:] != (2,) or len(polygon) < 3 or not np.isfinite(polygon).all():
             raise InvalidParameter(
@@ -121,7 +127,13 @@ class SeenMesh:
         return self._chosen(_inside(self._screen[:, :2], polygon), visible)
 
     def under(self, path: ArrayLike, radius: ArrayLike, *, visible: bool = False) -> Integers:
-        """The vertices under a stroke (k, 2), as :func:`in_brush`."""
+        """The vertices under a stroke (k, 2), as :func:`in_brush`.
+
+        Raises
+        ------
+        InvalidParameter
+            No place, numbers that are not finite, or a radius that is not positive.
+        """
         places, size = np.asarray(path, np.float64), _two(radius)
         if places.ndim != 2 or places.shape[1:] != (2,) or not len(places) or not np.isfinite(places).all():
             raise InvalidParameter(f"a path is (k, 2) finite screen coordinates, k >= 1; given shape: {places.shape}")

@@ -25,7 +25,15 @@ _PER_BYTE = 1100  # numbers compress; beyond this a size is a lie
 
 
 def read(path: Path, data: bytes, options: ReadOptions) -> SpaceDeformer:
-    """The map of a file."""
+    """The map of a file.
+
+    Raises
+    ------
+    UnreadableFile
+        What HDF5 cannot read, or no transform.
+    MissingExtra
+        h5py is not installed.
+    """
     options.require_physical(path)
     h5py = _h5py()
     try:

@@ -20,7 +20,13 @@ NAME = "NiftyReg affine"
 
 
 def read(path: Path, data: bytes, options: ReadOptions) -> SpaceDeformer:
-    """The map of a file."""
+    """The map of a file.
+
+    Raises
+    ------
+    UnreadableFile
+        No sixteen numbers, or another last row than 0 0 0 1.
+    """
     options.require_physical(path)
     matrix = numbers(path, data.replace(b",", b" "), 1, what="matrix", count=16).reshape(4, 4)
     if not np.array_equal(matrix[3], [0, 0, 0, 1]):

@@ -41,6 +41,11 @@ def write_clip(
         As of :func:`pliant.render`.
     turns
         How often the viewer walks around in the clip: a turntable.
+
+    Raises
+    ------
+    InvalidParameter
+        A size that is not even, or too many frames.
     """
     if size[0] % 2 or size[1] % 2:
         raise InvalidParameter(f"a film's width and height are even numbers; given: {size}")

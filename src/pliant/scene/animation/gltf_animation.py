@@ -40,7 +40,13 @@ def write_clip(clip: Clip, path: Path, progress: Progress | None, *, name: str =
 
 
 def read(path: Path, fps: float, *, animation: Which = 0) -> MeshSequence:
-    """The motion that morph targets, moving nodes and skins make."""
+    """The motion that morph targets, moving nodes and skins make.
+
+    Raises
+    ------
+    UnreadableFile
+        A description that contradicts itself.
+    """
     source = Source(read_bytes(path), path, path.parent)
     try:
         times, points = animated_points(opened(source), fps, animation)

@@ -28,7 +28,15 @@ def write_clip(clip: Clip, path: Path, progress: Progress | None) -> LossReport:
 
 
 def read(path: Path, fps: float) -> MeshSequence:
-    """The motion of a file; its times are its own."""
+    """The motion of a file; its times are its own.
+
+    Raises
+    ------
+    UnreadableFile
+        Another length than the header says.
+    InvalidParameter
+        Positions that are not finite.
+    """
     data = read_bytes(path)
     frames, points = _HEADER.unpack_from(data) if len(data) >= _HEADER.size else (0, 0)
     if frames < 1 or points < 1:

@@ -32,7 +32,15 @@ def write_clip(clip: Clip, path: Path, progress: Progress | None) -> LossReport:
 
 
 def read(path: Path, fps: float) -> MeshSequence:
-    """The motion of a file that counts frames."""
+    """The motion of a file that counts frames.
+
+    Raises
+    ------
+    UnreadableFile
+        Another header, or another length than it says.
+    InvalidParameter
+        Positions that are not finite.
+    """
     data = read_bytes(path)
     if not data.startswith(_MAGIC) or len(data) < _HEADER.size:
         raise UnreadableFile(path, "it does not begin as a PC2 point cache", "check what it is", byte=0)

@@ -34,7 +34,13 @@ def write_clip(clip: Clip, path: Path, progress: Progress | None) -> LossReport:
 
 
 def read(path: Path, _fps: float) -> MeshSequence:
-    """The points of the listed meshes."""
+    """The points of the listed meshes.
+
+    Raises
+    ------
+    UnreadableFile
+        No list of files, or meshes of different numbers of points.
+    """
     found: list[tuple[float, str]] = []
     parser = expat.ParserCreate()
     parser.StartElementHandler = lambda tag, values: _collect(found, tag, values)
