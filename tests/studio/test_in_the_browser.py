@@ -10,6 +10,10 @@ import pytest
 from bodies_to_edit import moved_scene, round_scene
 
 import pliant as pl
+from pliant.scene.layer import Layer
+from pliant.scene.scene import Scene
+from pliant.scene.stack import Stack
+from pliant.space.smooth_dragging import SmoothDrag
 
 
 def same_points(view, tolerance=2e-6):
@@ -120,6 +124,39 @@ def test_soft_selection_mirror_and_axis_lock(launched, view):
     np.testing.assert_allclose(displacement, displacement[:, ::-1], atol=1e-12)  # mirrored in j
     near, far = abs(displacement[1, 0, 0, 0]), abs(displacement[4, 0, 0, 0])
     assert abs(displacement[0, 0, 0, 0]) > near > far == 0  # softer with distance
+
+
+def test_neighbours_go_along_so_that_patches_meet_smoothly(launched, view):
+    mesh = round_scene().mesh
+    turn = pl.Affine.rotation("z", 0.5, (0.0, 0.0, 0.0)).matrix[:3, :3]
+    lattice = pl.BezierFFD.around(mesh, patches=(2, 1, 1), margin=0.05, axes=turn)
+    page = view(launched(Scene(mesh, Stack((Layer("Patches", lattice),)))))
+    page.drawn()
+    page.handles()
+    toolbar, canvas = (page.page.locator(place).first for place in (".stage-top .toolbar", "canvas"))
+    assert toolbar.bounding_box()["height"] < 60  # all its buttons in one row, those of turned axes and joints too
+    canvas.focus()
+    revision, point = page.session.revision, int(np.ravel_multi_index((2, 0, 3), lattice.shape))
+    page.drag(page.control(point), (0, -60), release=False)
+    rest = lattice.rest.reshape(-1, 3)
+    across = int(np.ravel_multi_index((4, 0, 3), lattice.shape))
+    moved = f"window.pliantStudio.controlPosition({across})[2] < {rest[across][2] - 0.01}"
+    page.until(moved)  # the handle beyond the joint goes the other way
+    page.page.mouse.up()
+    page.committed(revision)
+    made = page.session.scene.stack["Patches"].deformer.controls.reshape(-1, 3)
+    np.testing.assert_allclose(made, SmoothDrag(lattice, np.array([point])).controls(made[[point]]), atol=1e-9)
+    canvas.focus()
+    page.page.keyboard.press("j")
+    page.drag(page.control(point), (0, 30))
+    page.committed(revision + 1)
+    alone = page.session.scene.stack["Patches"].deformer.controls.reshape(-1, 3)
+    assert np.flatnonzero((alone != made).any(axis=1)).tolist() == [point]
+    page.page.keyboard.press("r")
+    page.page.keyboard.press("o")
+    page.page.keyboard.press("n")
+    assert toolbar.bounding_box()["height"] < 60  # the numbers of what is on stand in a row of their own
+    page.picture("points-toolbar")
 
 
 def test_the_gizmo_turns_a_layer_about_its_centre(launched, view):

@@ -40,6 +40,11 @@ def smooth_moves(points: Floats, blocks: Sequence[PatchBlock], index: int) -> di
     return shares
 
 
+def joined(blocks: Sequence[PatchBlock]) -> bool:
+    """Whether there are joints, inside of blocks or between them."""
+    return any(_inner(block, axis) or _welded(block, blocks, axis) for block in blocks for axis in range(3))
+
+
 def _ratio(points: Floats, before: int, joint: int, after: int) -> float | None:
     """The distance after a joint over that before; None where the three are not on a line, in this order."""
     a, b = points[joint] - points[before], points[after] - points[joint]

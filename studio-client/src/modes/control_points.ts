@@ -19,6 +19,9 @@ export class ControlPoints {
   /** (m, 3) places around, outwards and along of a round lattice; -1 where a point stands at several. */
   private readonly places: Int32Array | null;
 
+  /** Whether patches meet in it, whose joints can be kept smooth. */
+  readonly joints: boolean;
+
   constructor(
     readonly layer: string,
     readonly shape: Shape | null,
@@ -27,6 +30,7 @@ export class ControlPoints {
     private readonly middle = new Vector3(),
   ) {
     this.places = (answer.arrays["places"] as Int32Array | undefined) ?? null;
+    this.joints = answer.head["joints"] === true;
     this.rest = answer.arrays["rest"] as Float64Array;
     this.now = answer.arrays["points"] as Float64Array;
     this.links = answer.arrays["links"] as Uint32Array;
@@ -196,6 +200,14 @@ export class PointMotion {
 
   undo(): void {
     this.points.now.set(this.start);
+  }
+
+  /** Where all the others go with it: (n, 3). */
+  takeAlong(controls: ArrayLike<number>): void {
+    const own = new Set(this.indices);
+    for (let i = 0; i < this.points.count; i++) {
+      if (!own.has(i)) for (let k = 3 * i; k < 3 * i + 3; k++) this.points.now[k] = controls[k]!;
+    }
   }
 
   /** (k, 3) where the moved ones are now. */

@@ -25,6 +25,7 @@ export const POINT_KEYS: readonly KeyLine[] = [
   LOCAL,
   ...SELECTING,
   ["Alt-click", "key_layer"],
+  ["J", "keepJoints"],
   ["Delete", "key_reset"],
   ["Esc", "key_escape"],
 ];

@@ -6,13 +6,16 @@ import type { IconName } from "../core/icons";
 import type { StringKey } from "../core/strings";
 import type { Studio } from "../studio";
 import type { Layer } from "../transport/protocol";
-import { Gizmo } from "../view/gizmo";
 import { Handles } from "../view/handles";
-import { ControlPoints, PointMotion } from "./control_points";
-import { Grip } from "./grip";
-import { LayerDrag } from "./layer_drag";
+import { ControlPoints } from "./control_points";
 import { POINT_KEYS, type KeyLine } from "./key_lists";
 import { registerMode, type Mode, type Pointer } from "./mode";
+import { lockPoints, placeLast, resetPoints } from "./point_commands";
+import { PointDrag } from "./point_drag";
+import { paintPoints } from "./point_colors";
+import { PointGizmo } from "./point_gizmo";
+import { PointTaking } from "./point_taking";
+import { pointToolbar } from "./point_toolbar";
 import { PointsPanel } from "./points_panel";
 import { SelectionFrame } from "./selection_frame";
 import { PointTools, type Axis, type Take } from "./points_tools";
@@ -27,22 +30,23 @@ export class PointsMode implements Mode {
   points: ControlPoints | null = null;
   readonly tools: PointTools;
   protected handles: Handles | null = null;
-  private gizmo: Gizmo | null = null;
+  private gizmo: PointGizmo | null = null;
   private readonly side: PointsPanel;
   private readonly frame = new SelectionFrame();
-  private grip: Grip | null = null;
-  private drag: LayerDrag | null = null;
-  private motion: PointMotion | null = null;
+  private readonly held: PointDrag;
+  private readonly taking: PointTaking;
   private hovered: number | null = null;
   private stops: (() => void)[] = [];
   private asked = 0;
 
   constructor(protected readonly studio: Studio) {
     this.tools = new PointTools(studio);
+    this.taking = new PointTaking(studio, this.tools);
+    this.held = new PointDrag(studio, this.tools, () => this.follow());
     this.side = new PointsPanel({
-      place: (position) => void this.placeLast(position),
-      reset: (all) => void this.reset(all),
-      lock: (locked) => void this.lock(locked),
+      place: (position) => void placeLast(studio, this.points, position),
+      reset: (all) => void resetPoints(studio, this.points, all),
+      lock: (locked) => void lockPoints(studio, this.points, locked),
       chooseLayer: (axis, index) => this.chooseLayer(axis, index),
       chooseAll: () => this.chooseAll(),
     });
@@ -51,10 +55,11 @@ export class PointsMode implements Mode {
   enter(): void {
     const { studio } = this;
     this.handles = new Handles(studio.viewport);
-    this.gizmo = new Gizmo(studio.viewport);
-    this.gizmo.onBegin = () => this.begin();
-    this.gizmo.onMove = (matrix) => this.step((motion) => motion.transform(matrix));
-    this.gizmo.onEnd = () => void this.finish();
+    this.gizmo = new PointGizmo(studio, this.tools, {
+      begin: () => this.begin(),
+      move: (matrix) => this.held.step((motion) => motion.transform(matrix)),
+      end: () => void this.finish(),
+    });
     studio.viewport.element.append(this.frame.element);
     this.stops = [
       studio.session.scene.onChange(() => void this.load()),
@@ -75,7 +80,7 @@ export class PointsMode implements Mode {
   }
 
   toolbar(): HTMLElement {
-    return this.tools.bar();
+    return pointToolbar(this.tools);
   }
 
   panel(): { title: StringKey; body: HTMLElement } {
@@ -106,7 +111,6 @@ export class PointsMode implements Mode {
   }
 
   down(pointer: Pointer): boolean {
-    this.gizmo?.useCamera();
     if (this.gizmo?.hot) return false;
     const { points, handles } = this;
     if (!points || !handles) return false;
@@ -117,33 +121,29 @@ export class PointsMode implements Mode {
       this.frame.begin(pointer);
       return true;
     }
-    if (pointer.alt) points.choose(this.wholeLayer(found), pointer.shift ? "add" : "only");
+    if (pointer.alt) points.choose(this.taking.layer(points, found), pointer.shift ? "add" : "only");
     else if (pointer.shift) points.choose(group, group.length > 1 ? "add" : "toggle");
     else if (!group.every((index) => points.selected.has(index))) points.choose(group, "only");
     else points.last = found;
     this.look();
     if (this.gizmo) this.gizmo.enabled = false;
-    this.grip = new Grip(this.studio.viewport, points.at(found), pointer);
+    this.held.take(points.at(found), pointer);
     return true;
   }
 
   move(pointer: Pointer): void {
     if (this.frame.drawing) this.frame.stretch(pointer);
-    const { grip } = this;
-    if (!grip) return;
-    if (!this.motion) {
-      if (!grip.dragged(pointer) || !this.points?.selected.size) return;
-      this.begin();
-    }
-    const by = grip.moved(pointer, this.tools.along, this.tools.diagonal);
-    if (by) this.step((motion) => motion.translate(this.tools.restrained(by)));
+    const { held } = this;
+    if (!held.pulls(pointer) || !this.points?.selected.size) return;
+    if (!held.moving) this.begin();
+    held.pull(pointer);
   }
 
   up(pointer: Pointer): void {
     if (this.frame.drawing) this.takeRectangle(pointer);
-    this.grip = null;
+    this.held.letGo();
     if (this.gizmo) this.gizmo.enabled = true;
-    if (this.motion) void this.finish();
+    if (this.held.moving) void this.finish();
   }
 
   hover(pointer: Pointer): void {
@@ -163,6 +163,7 @@ export class PointsMode implements Mode {
       b: () => this.tools.change({ rectangle: !this.tools.now.rectangle }),
       o: () => this.tools.change({ soft: !this.tools.now.soft }),
       n: () => this.tools.change({ snap: !this.tools.now.snap }),
+      j: () => this.tools.change({ smooth: !this.tools.now.smooth }),
       l: () => this.tools.change({ local: !this.tools.now.local }),
       a: () => this.chooseAll(),
       delete: () => void this.remove(),
@@ -177,8 +178,7 @@ export class PointsMode implements Mode {
 
   /** How far its rings are from the middle of the gizmo, in pixels. */
   get gizmoRadius(): number {
-    const pivot = this.pivot();
-    return pivot && this.gizmo ? this.gizmo.radius(pivot) / this.studio.viewport.pixel(pivot) : 0;
+    return this.gizmo?.radius(this.points) ?? 0;
   }
 
   /** Where a control point is on the screen. */
@@ -192,8 +192,8 @@ export class PointsMode implements Mode {
     this.points.choose([index], "only");
     this.begin();
     for (let i = 1; i <= moves; i++) {
-      this.step((motion) => motion.translate(by.clone().multiplyScalar(i)));
-      await this.drag?.answered();
+      this.held.step((motion) => motion.translate(by.clone().multiplyScalar(i)));
+      await this.held.answers();
       await this.studio.viewport.settled();
     }
     await this.finish();
@@ -202,16 +202,15 @@ export class PointsMode implements Mode {
   chooseLayer(axis: Axis, index: number): void {
     const { points } = this;
     if (!points?.arranged) return;
-    const wanted = Math.min(Math.max(index, 0), points.layers(axis) - 1);
-    const first = [...Array(points.count).keys()].find((each) => points.place(each)![axis] === wanted);
-    if (first !== undefined) points.choose(points.layerOf(first, axis), "only");
+    const found = this.taking.numbered(points, axis, index);
+    if (found.length) points.choose(found, "only");
     this.look();
   }
 
   /** What a click takes: the control points of the thing that is there, the nearest first. */
   protected find(pointer: Pointer): number[] | null {
     const found = this.handles?.pick(pointer.x, pointer.y, pointer.touch ? 26 : undefined) ?? null;
-    return found === null || !this.points ? null : [found, ...this.taken(found).filter((each) => each !== found)];
+    return found === null || !this.points ? null : [found, ...this.taking.with(this.points, found).filter((each) => each !== found)];
   }
 
   /** What there is to take in these control points. */
@@ -222,7 +221,7 @@ export class PointsMode implements Mode {
 
   /** What the key for deleting does. */
   protected remove(): Promise<void> {
-    return this.reset(false);
+    return resetPoints(this.studio, this.points, false);
   }
 
   /** Whether the mode is for a layer. */
@@ -238,34 +237,15 @@ export class PointsMode implements Mode {
   /** The control points are elsewhere. */
   protected moved(): void {}
 
-  private taken(index: number): number[] {
-    const points = this.points!;
-    const { take } = this.tools.now;
-    if (take === "ring") return points.rowOf(index, 0);
-    if (take === "row") return points.rowOf(index, 1);
-    return take === "layer" ? this.wholeLayer(index) : [index];
-  }
-
-  /** A layer across the axis of a round lattice; of a box, the one that faces the eye. */
-  private wholeLayer(index: number): number[] {
-    const points = this.points!;
-    return points.layerOf(index, points.round ? 2 : this.facingAxis());
-  }
-
   private chooseAll(): void {
     const { points } = this;
-    if (!points) return;
-    const all = points.selected.size === points.count;
-    points.choose(all ? [] : [...Array(points.count).keys()], "only");
+    points?.choose(this.taking.all(points), "only");
     this.look();
   }
 
   private escape(): void {
-    if (this.motion) {
-      this.motion.undo();
-      this.motion = this.grip = null;
-      void this.drag?.cancel();
-      this.drag = null;
+    if (this.held.moving) {
+      this.held.cancel();
       this.gizmo?.cancel();
       this.handles?.move();
     } else this.points?.choose([], "only");
@@ -282,63 +262,35 @@ export class PointsMode implements Mode {
       this.look();
       return;
     }
-    if (this.drag) return; // the drag's end brings another scene
+    if (this.held.lasts) return; // the drag's end brings another scene
     const answer = await this.studio.ask("points.get", { layer: layer.name });
-    if (!answer || ticket !== this.asked || this.drag || !this.handles) return;
+    if (!answer || ticket !== this.asked || this.held.lasts || !this.handles) return;
     const before = this.points;
     const middle = new Vector3(...(this.studio.scene!.mesh!.center as [number, number, number]));
     this.points = new ControlPoints(layer.name, layer.shape, answer, middle);
     if (before) this.points.keepSelection(before);
     this.handles.load(this.points.now, this.points.links);
-    this.tools.offer(this.takes(this.points), this.points.shape !== null, this.points.turn);
+    this.tools.offer(this.takes(this.points), this.points.shape !== null, this.points.turn, this.points.joints);
     this.look();
   }
 
   private begin(): void {
-    const { points, tools } = this;
-    if (!points) return;
-    this.motion = new PointMotion(points, tools.softRadius, tools.now.mirror);
-    this.drag = new LayerDrag(this.studio, "drag", { layer: points.layer });
+    if (this.points) this.held.begin(this.points);
     this.look();
   }
 
-  private step(apply: (motion: PointMotion) => void): void {
-    const { motion, points } = this;
-    if (!motion || !points) return;
-    apply(motion);
+  /** Handles, gizmo and panel go along. */
+  private follow(): void {
+    const { points } = this;
+    if (!points) return;
     this.handles?.move();
     this.moved();
     this.side.follow(points);
-    this.drag?.move({}, { index: motion.indices, positions: motion.positions });
-    if (!this.gizmo?.dragging) this.gizmo?.place(this.pivot(), this.tools.turn);
+    this.gizmo?.place(points);
   }
 
   private async finish(): Promise<void> {
-    const { drag } = this;
-    this.motion = null;
-    if (!drag) return;
-    await drag.commit();
-    this.drag = null;
-    await this.load();
-  }
-
-  private async placeLast(position: Float64Array): Promise<void> {
-    const { points } = this;
-    if (!points || points.last === null) return;
-    await this.studio.ask("points.set", { layer: points.layer }, { index: Uint32Array.of(points.last), positions: position });
-  }
-
-  protected async reset(all: boolean): Promise<void> {
-    const { points } = this;
-    if (!points || (!all && !points.selected.size)) return;
-    const index = all ? {} : { index: Uint32Array.from(points.selected) };
-    await this.studio.ask("points.reset", { layer: points.layer }, index);
-  }
-
-  private async lock(locked: boolean): Promise<void> {
-    const { points } = this;
-    if (!points) return;
-    await this.studio.ask("points.lock", { layer: points.layer, locked }, { index: Uint32Array.from(points.selected) });
+    if (await this.held.finish()) await this.load();
   }
 
   private takeRectangle(pointer: Pointer): void {
@@ -347,45 +299,15 @@ export class PointsMode implements Mode {
     this.look();
   }
 
-  /** The lattice axis that looks most towards the eye: its layers are what Alt-click takes. */
-  private facingAxis(): Axis {
-    const eye = this.studio.viewport.cameras.direction();
-    const facing = this.points!.axes.map((axis) => Math.abs(axis.dot(eye)));
-    return facing.indexOf(Math.max(...facing)) as Axis;
-  }
-
-  private pivot(): Vector3 | null {
-    const { points } = this;
-    if (!points?.selected.size) return null;
-    if (this.tools.now.pivot === "origin") return new Vector3();
-    return this.tools.now.pivot === "last" && points.last !== null ? points.at(points.last) : points.center;
-  }
-
   private followTools(): void {
-    const { tool, snap, axis } = this.tools.now;
-    this.gizmo?.setTool(tool);
-    this.gizmo?.setAxis(axis);
-    this.gizmo?.setSnap(snap ? this.tools.step : null);
+    this.gizmo?.followTools();
     this.look();
   }
 
   /** Colours, gizmo and panel follow what is selected. */
   protected look(): void {
-    const { points, handles, motion } = this;
-    const palette = this.studio.palette;
-    handles?.setColors(
-      (index) => {
-        if (points?.selected.has(index)) return palette.selected;
-        if (points?.locked.has(index)) return palette.locked;
-        const weight = motion?.weight(index) ?? 0;
-        if (weight > 0) return palette.handle.clone().lerp(palette.selected, weight);
-        return index === this.hovered ? palette.hovered : palette.handle;
-      },
-      (index) => (index === this.hovered ? 1.35 : points?.selected.has(index) ? 1.2 : 1),
-      palette.lattice,
-    );
-    this.gizmo?.useCamera();
-    this.gizmo?.place(this.pivot(), this.tools.turn);
+    if (this.handles) paintPoints(this.handles, this.studio.palette, this.points, this.held, this.hovered);
+    this.gizmo?.place(this.points);
     this.selectionChanged();
     this.studio.viewport.request();
   }

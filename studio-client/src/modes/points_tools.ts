@@ -1,11 +1,8 @@
 // How control points are moved: tool, soft selection, mirror, snapping, pivot, the axis that a drag is locked to.
 
 import { Quaternion, Vector3 } from "three";
-import { h, replace } from "../core/dom";
 import { Signal } from "../core/signal";
-import { t, tWord } from "../core/strings";
 import type { Studio } from "../studio";
-import { iconButton, numberField, press, select, slider, toggle } from "../panels/controls";
 import type { Tool } from "../view/gizmo";
 import { roundStep } from "../view/ground";
 
@@ -27,6 +24,9 @@ export interface Tools {
   axis: Axis | null;
   /** Along the axes of the lattice, not of the world. */
   local: boolean;
+  /** Whether there are joints between patches, and others go along so that these stay smooth. */
+  joints: boolean;
+  smooth: boolean;
   take: Take;
   /** What there is to take. */
   takes: readonly Take[];
@@ -46,6 +46,8 @@ export class PointTools {
     pivot: "center",
     axis: null,
     local: false,
+    joints: false,
+    smooth: true,
     take: "point",
     takes: ["point"],
     letters: ["i", "j", "k"],
@@ -76,6 +78,11 @@ export class PointTools {
     return this.now.soft ? this.now.radius * this.diagonal : null;
   }
 
+  /** Whether joints are kept smooth. */
+  get smooth(): boolean {
+    return this.now.joints && this.now.smooth;
+  }
+
   /** How the axes in use are turned; null where they are the world's. */
   get turn(): Quaternion | null {
     return this.now.local ? this.own : null;
@@ -97,78 +104,13 @@ export class PointTools {
     return kept.applyQuaternion(turn);
   }
 
-  /** What these control points let one take, what their axes are called, and how these are turned. */
-  offer(takes: readonly Take[], boxed: boolean, own: Quaternion | null): void {
+  /** What these control points let one take, what their axes are called, how these are turned; what has joints. */
+  offer(takes: readonly Take[], boxed: boolean, own: Quaternion | null, joints: boolean): void {
     const turned = (own === null) !== (this.own === null);
     this.own = own;
     const letters = boxed ? (["i", "j", "k"] as const) : (["x", "y", "z"] as const);
-    if (!turned && String(takes) === String(this.now.takes) && letters[0] === this.now.letters[0]) return;
-    this.change({ takes, letters, take: takes.includes(this.now.take) ? this.now.take : "point" });
-  }
-
-  /** The bar above the canvas. */
-  bar(): HTMLElement {
-    const element = h("div", { class: "toolbar", role: "toolbar" });
-    this.state.watch(() => this.fill(element));
-    return element;
-  }
-
-  private fill(element: HTMLElement): void {
-    const { now } = this;
-    const tool = (name: Tool, iconName: "move" | "rotate" | "scale", label: string): HTMLElement => {
-      const each = iconButton(iconName, label, () => this.change({ tool: name }));
-      press(each, now.tool === name);
-      return each;
-    };
-    replace(
-      element,
-      tool("translate", "move", `${t("toolMove")} (G)`),
-      tool("rotate", "rotate", `${t("toolRotate")} (R)`),
-      tool("scale", "scale", `${t("toolScale")} (S)`),
-      separator(),
-      now.takes.length > 1 && this.takeChoice(),
-      toggle("rectangle", `${t("toolRectangle")} (B)`, now.rectangle, (rectangle) => this.change({ rectangle })),
-      separator(),
-      toggle("soft", `${t("soft")} (O)`, now.soft, (soft) => this.change({ soft })),
-      now.soft && this.radiusSlider(),
-      toggle("magnet", `${t("snap")} (N)`, now.snap, (snap) => this.change({ snap })),
-      this.own && toggle("axes", `${t("key_local")} (L)`, now.local, (local) => this.change({ local })),
-      now.snap && numberField(this.step, (step) => this.change({ step }), { label: t("snapStep"), low: 1e-9, step: this.step }),
-      separator(),
-      h("span", { class: "toolbar-label" }, t("mirror")),
-      this.mirrorChoice(),
-      h("span", { class: "toolbar-label" }, t("pivot")),
-      this.pivotChoice(),
-    );
-  }
-
-  private radiusSlider(): HTMLElement {
-    return slider(this.now.radius, {
-      label: t("radius"),
-      low: 0.02,
-      high: 1,
-      step: 0.01,
-      text: (value) => `${Math.round(100 * value)} %`,
-      ondone: (radius) => this.change({ radius }),
-    });
-  }
-
-  private mirrorChoice(): HTMLElement {
-    const [first, second, third] = this.now.letters;
-    const choices = [["", t("mirrorOff")], ["0", first], ["1", second], ["2", third]] as const;
-    const now = this.now.mirror === null ? "" : (String(this.now.mirror) as "0" | "1" | "2");
-    return select(choices, now, (value) => this.change({ mirror: value === "" ? null : (Number(value) as Axis) }), t("mirror"));
-  }
-
-  private takeChoice(): HTMLElement {
-    const choices = this.now.takes.map((each) => [each, tWord("take_", each)] as const);
-    return select(choices, this.now.take, (take) => this.change({ take }), t("take"));
-  }
-
-  private pivotChoice(): HTMLElement {
-    const choices = [["center", t("pivotCenter")], ["last", t("pivotLast")], ["origin", t("pivotOrigin")]] as const;
-    return select(choices, this.now.pivot, (pivot) => this.change({ pivot }), t("pivot"));
+    const same = String(takes) === String(this.now.takes) && letters[0] === this.now.letters[0];
+    if (!turned && same && joints === this.now.joints) return;
+    this.change({ takes, letters, joints, take: takes.includes(this.now.take) ? this.now.take : "point" });
   }
 }
-
-export const separator = (): HTMLElement => h("span", { class: "separator", "aria-hidden": "true" });

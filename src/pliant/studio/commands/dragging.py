@@ -10,12 +10,14 @@ from numpy.typing import NDArray
 
 from pliant.errors import InvalidParameter
 from pliant.mesh import Points
+from pliant.scene.keyed import tool_of
 from pliant.scene.stack import Stack
 from pliant.scene.stack_binding import StackBinding
 from pliant.space.direct import pull as pulled
+from pliant.space.smooth_dragging import SmoothDrag
 from pliant.studio.dragging import Dragging, begin, cancel, commit, ongoing
 from pliant.studio.modes.layering import with_fields
-from pliant.studio.modes.placements import to_frame
+from pliant.studio.modes.placements import to_frame, to_world
 from pliant.studio.request import Client, Request, command
 from pliant.studio.serving.frames import Frame
 from pliant.studio.session import Session
@@ -32,6 +34,7 @@ class PointsDrag(Dragging):
         if self._controls.ndim < 2 or self._controls.shape[-1] != 3:
             raise InvalidParameter(f"layer {layer!r} has no control points: change its fields")
         self._locked = set(session.locked_points(layer).tolist())
+        self._smooth: tuple[NDArray[np.int64], SmoothDrag] | None = None
 
     def move(self, request: Request) -> tuple[NDArray[np.integer], Points, dict[str, NDArray[Any]]]:
         flat = self._controls.reshape(-1, 3)
@@ -39,10 +42,26 @@ class PointsDrag(Dragging):
         if len(index) != len(positions):
             raise InvalidParameter(f"{len(index)} control points have {len(positions)} positions")
         free = [at for at, point in enumerate(index.tolist()) if point not in self._locked]
-        flat[index[free]] = to_frame(self._deformer, positions[free])
-        changed = np.stack(np.unravel_index(index[free], self._controls.shape[:-1]), axis=-1)
+        index, positions = index[free], to_frame(self._deformer, positions[free])
+        if "smooth" in request.values and request.truth("smooth") and len(index):
+            return self._move_smoothly(flat, index, positions)
+        flat[index] = positions
+        changed = np.stack(np.unravel_index(index, self._controls.shape[:-1]), axis=-1)
         touched = self._drag.update(self._controls, changed)
         return touched, self._drag.points, {}
+
+    def _move_smoothly(
+        self, flat: Points, index: NDArray[np.int64], positions: Points
+    ) -> tuple[NDArray[np.integer], Points, dict[str, NDArray[Any]]]:
+        """Take along what keeps the joints of patches smooth, but for what is locked; pages are told where it goes."""
+        if self._smooth is None or not np.array_equal(self._smooth[0], index):
+            self._smooth = index, SmoothDrag(tool_of(self._deformer), index)
+        locked = sorted(self._locked)
+        kept = flat[locked]
+        flat[:] = self._smooth[1].controls(positions)
+        flat[locked] = kept
+        touched = self._drag.update(self._controls)
+        return touched, self._drag.points, {"controls": to_world(self._deformer, flat).reshape(-1)}
 
     @property
     def stack(self) -> Stack:

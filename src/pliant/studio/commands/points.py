@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 from pliant.deformer import Controls, Deformer
 from pliant.errors import InvalidParameter
 from pliant.rendering.palette import SEQUENTIAL, color_table
+from pliant.scene.keyed import tool_of
+from pliant.space.smooth_dragging import has_joints
 from pliant.studio.modes.lattices import axes_of, links, places_around
 from pliant.studio.modes.placements import to_frame, to_world
 from pliant.studio.request import Request, command
@@ -32,7 +34,7 @@ def get(session: Session, request: Request) -> Frame:
     around = places_around(deformer)
     if around is not None:
         arrays["places"] = around.reshape(-1)
-    return Frame({}, arrays)
+    return Frame({"joints": has_joints(tool_of(deformer))}, arrays)
 
 
 @command("points.influence", reads=True)

@@ -3,6 +3,7 @@
 import type { Strings } from "./strings";
 
 export const POINTS = {
+  keepJoints: ["Take neighbours along, so that patches meet smoothly", "带动相邻控制点，使曲面片光滑相接"],
   take: ["A click takes", "点击选取"],
   take_point: ["Point", "单点"],
   take_ring: ["Ring", "环"],

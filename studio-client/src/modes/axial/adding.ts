@@ -5,7 +5,7 @@ import type { IconName } from "../../core/icons";
 import { t, tWord } from "../../core/strings";
 import { iconButton, toggle } from "../../panels/controls";
 import type { Studio } from "../../studio";
-import { separator } from "../points_tools";
+import { separator } from "../point_toolbar";
 
 const KINDS: readonly (readonly [string, IconName])[] = [
   ["twist", "twist"],

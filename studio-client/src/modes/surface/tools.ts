@@ -6,7 +6,7 @@ import { Signal } from "../../core/signal";
 import { t, type StringKey } from "../../core/strings";
 import { iconButton, press, segments, toggle } from "../../panels/controls";
 import type { Tool } from "../../view/gizmo";
-import { separator } from "../points_tools";
+import { separator } from "../point_toolbar";
 import type { Part } from "./region";
 
 export type Picker = "rectangle" | "lasso" | "brush" | "geodesic";

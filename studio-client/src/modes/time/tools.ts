@@ -4,7 +4,7 @@ import { h, replace } from "../../core/dom";
 import { t } from "../../core/strings";
 import { button, iconButton, numberField, press, select, toggle } from "../../panels/controls";
 import type { Tool } from "../../view/gizmo";
-import { separator } from "../points_tools";
+import { separator } from "../point_toolbar";
 import type { ClipModel } from "./clip_model";
 import type { Ghosts } from "./ghosts";
 import type { Placer } from "./placer";

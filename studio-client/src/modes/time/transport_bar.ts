@@ -3,7 +3,7 @@
 import { h, replace } from "../../core/dom";
 import { t } from "../../core/strings";
 import { button, iconButton, numberField, press, select, setNumber, toggle } from "../../panels/controls";
-import { separator } from "../points_tools";
+import { separator } from "../point_toolbar";
 import type { ClipModel } from "./clip_model";
 
 export interface BarActions {
