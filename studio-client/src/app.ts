@@ -52,6 +52,7 @@ export function mount(root: HTMLElement, transport: Transport, { antialias = tru
     const next = modes.find((mode) => mode.id === id);
     if (!next || next === studio.mode.value) return;
     studio.mode.value?.leave();
+    sessionStorage.setItem("mode", id);
     studio.mode.set(next);
     next.enter();
   };
@@ -97,7 +98,9 @@ export function mount(root: HTMLElement, transport: Transport, { antialias = tru
   listen(studio);
   const stopKeys = listenKeys(studio, { actions, compare, modes, setMode });
   acceptDrops(root, opening);
+  const last = root === document.body ? sessionStorage.getItem("mode") : null;
   setMode("points");
+  if (last) goOnIn(studio, () => setMode(last));
   return {
     studio,
     modes,
@@ -107,6 +110,14 @@ export function mount(root: HTMLElement, transport: Transport, { antialias = tru
       studio.session.close();
     },
   };
+}
+
+/** A page that is loaded again goes on in the mode that it was in. */
+function goOnIn(studio: Studio, enter: () => void): void {
+  const stop = studio.meshLoaded.onChange(() => {
+    stop();
+    enter();
+  });
 }
 
 function modeRail(studio: Studio, modes: Mode[], setMode: (id: string) => void): HTMLElement {

@@ -1,5 +1,7 @@
 """What people do by mistake: drags and picks that are given up leave no trace, and one drag is one entry."""
 
+import json
+
 import numpy as np
 
 from pliant.scene.scene import Scene
@@ -122,3 +124,56 @@ def test_another_page_may_undo_what_this_one_holds(launched, view):
     at_rest(page)
     assert page.page.locator(".toast").count() == 1
     assert page.session.scene.stack.layers == ()
+
+
+def test_a_click_without_a_move_is_no_entry_and_a_page_goes_on_where_it_was(launched, view):
+    page = opened(launched, view)
+    revision = page.session.revision
+    page.page.mouse.click(*place(page))
+    page.settled()
+    assert (page.session.revision, page.session.scene.stack.layers) == (revision, ())
+    assert page.ask(f"{PROBE}.count('handle')") == len(END)
+    page.page.keyboard.press("5")
+    page.page.get_by_role("button", name="Twist", exact=True).click()
+    page.committed(revision)
+    page.until("window.pliantStudio.probes.axial.screen('angle') !== null")
+    page.settled()
+    revision, at = page.session.revision, page.ask("window.pliantStudio.probes.axial.screen('angle')")
+    page.page.mouse.click(at["x"], at["y"])
+    page.until("window.pliantStudio.probes.axial.screen('angle') !== null")
+    page.page.reload()
+    page.until("window.pliantStudio !== undefined")
+    page.drawn()
+    page.until("document.querySelector('.rail [aria-pressed=true]').dataset.mode === 'axial'")
+    assert page.session.revision == revision
+
+
+def test_markers_come_back_and_poses_that_play_are_given_up(launched, view):
+    page = view(launched(Scene(BAR)))
+    page.drawn()
+    page.ask("window.pliantStudio.mode('transfer')")
+    page.page.get_by_role("button", name="Try an example").click()
+    probe = "window.pliantStudio.probes.transfer"
+    page.until(f"{probe}.state().markers.length > 3")
+    before = page.ask(f"{probe}.state().markers")
+    for button in ("Delete 2", "Clear"):
+        page.page.get_by_role("button", name=button, exact=True).click()
+        page.until(f"{probe}.state().markers.length < {len(before)}")
+        page.page.keyboard.press("Control+z")
+        page.until(f"{probe}.state().markers.length === {len(before)}")
+        assert page.ask(f"{probe}.state().markers") == before
+    page.page.keyboard.press("Control+z")  # no change is left
+    page.page.get_by_role("button", name="Transfer the poses").click()
+    page.until(f"{probe}.state().ready", 60)
+    page.until(f"{probe}.weights().length > 1")
+    page.settled()
+    revision, weights = page.session.revision, page.session.scene.stack["Poses"].deformer.controls
+    page.page.locator("canvas").first.focus()
+    page.page.keyboard.press("Space")
+    page.until(f"{probe}.playing() && window.pliantStudio.latencies.length > 3")
+    page.page.keyboard.press("Control+z")
+    page.until(f"!{probe}.playing()")
+    page.until(f"{json.dumps(weights.tolist())}.every((weight, i) => {probe}.weights()[i] === weight)")
+    page.settled()
+    assert page.session.revision == revision
+    assert page.page.locator(".toast").count() == 0

@@ -16,16 +16,17 @@ export const latencies: number[] = [];
 
 /** The drag in hand, and when the last one that was in hand has ended. */
 let held: LayerDrag | null = null;
-let ending: Promise<void> = Promise.resolve();
+let ending: Promise<unknown> = Promise.resolve();
 
 const hold = (drag: LayerDrag): void => void (held = drag);
 export const dragInHand = (): boolean => held !== null;
-export const dragEnded = (): Promise<void> => ending;
+export const dragEnded = (): Promise<unknown> => ending;
 
 export class LayerDrag {
   private readonly latest: Latest<Job>;
   private index: Numbers | null = null;
   private ended = false;
+  private moved = false;
   /** What the server said to its beginning; null where it refused. */
   readonly begun: Promise<Frame | null>;
 
@@ -46,6 +47,7 @@ export class LayerDrag {
   }
 
   move(values: Record<string, unknown>, arrays: Record<string, Numbers>): void {
+    this.moved = true;
     if (!this.ended) this.latest.push({ values, arrays, began: performance.now() });
   }
 
@@ -54,31 +56,35 @@ export class LayerDrag {
     return this.latest.idle();
   }
 
-  commit(): Promise<void> {
-    return this.letGo(this.keep());
+  /** Keep what has been done; whether there was anything: what did not move is no entry of the history. */
+  commit(): Promise<boolean> {
+    return this.letGo(this.moved ? this.keep() : this.drop());
   }
 
-  cancel(): Promise<void> {
-    return this.letGo(this.drop());
+  async cancel(): Promise<void> {
+    await this.letGo(this.drop());
   }
 
-  private letGo(last: Promise<void>): Promise<void> {
+  private letGo(last: Promise<boolean>): Promise<boolean> {
     if (held === this) held = null;
-    return (ending = last);
+    ending = last;
+    return last;
   }
 
-  private async keep(): Promise<void> {
+  private async keep(): Promise<boolean> {
     await this.begun;
     await this.latest.idle();
-    if (!this.ended) await this.studio.ask(`${this.prefix}.commit`);
+    const kept = !this.ended && (await this.studio.ask(`${this.prefix}.commit`)) !== null;
     this.ended = true;
+    return kept;
   }
 
-  private async drop(): Promise<void> {
+  private async drop(): Promise<boolean> {
     this.latest.clear();
     const was = this.ended;
     this.ended = true;
-    if (!was) await this.studio.ask(`${this.prefix}.cancel`);
+    if ((await this.begun) && !was) await this.studio.ask(`${this.prefix}.cancel`);
+    return false;
   }
 
   /** Ask for a move; where the server has given the drag up, that is told once. */

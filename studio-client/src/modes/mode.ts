@@ -35,6 +35,8 @@ export interface Mode {
   hover?(pointer: Pointer): void;
   /** True where the key is used up. */
   key?(event: KeyboardEvent): boolean;
+  /** Take back what is no entry of the history; true where there was something. */
+  undo?(): boolean;
   /** What stands above the canvas while the mode is on. */
   toolbar?(): HTMLElement;
   /** What stands under the canvas while the mode is on. */

@@ -18,7 +18,7 @@ export class Actions {
   ) {}
 
   undo(): void {
-    void this.go("history.undo");
+    void this.go("history.undo", () => this.studio.mode.value?.undo?.() ?? false);
   }
 
   redo(): void {
@@ -26,10 +26,10 @@ export class Actions {
   }
 
   /** What is in hand is given up, and nothing else; what was let go of just now is an entry first. */
-  private async go(command: string): Promise<void> {
+  private async go(command: string, instead: () => boolean = () => false): Promise<void> {
     if (dragInHand() && this.studio.mode.value?.key?.(new KeyboardEvent("keydown", { key: "Escape" }))) return;
     await dragEnded();
-    await this.studio.ask(command);
+    if (!instead()) await this.studio.ask(command);
   }
 
   home(): void {

@@ -16,15 +16,22 @@ const KINDS: readonly (readonly [string, IconName])[] = [
   ["sine", "sine"],
   ["wave", "wave"],
   ["scale", "scale"],
+  ["tangent-frames", "tendril"],
 ];
 
-/** Lay a deformer around the shape; its layer, if there is one. */
+/** Lay a deformer around the shape, along the axis that points up; its layer, if there is one. */
 export async function addAxial(studio: Studio, kind: string): Promise<string | null> {
-  const answer = await studio.ask("layers.add", { kind, fields: kind === "sine" ? { normal: "x" } : {} });
+  const answer = await studio.ask("layers.add", { kind, fields: upright(kind, studio.settings.now.up) });
   if (!answer) return null;
   const layer = answer.head["layer"] as string;
   studio.activeLayer.set(layer);
   return layer;
+}
+
+function upright(kind: string, up: "y" | "z"): Record<string, string> {
+  if (kind === "scale") return {};
+  if (kind === "bend") return { axis: "x", normal: up === "z" ? "y" : "z" }; // about an axis across, in the upright plane
+  return kind === "sine" ? { axis: up, normal: "x" } : { axis: up };
 }
 
 export function axialToolbar(snap: boolean, onSnap: (on: boolean) => void, add: (kind: string) => void): HTMLElement {

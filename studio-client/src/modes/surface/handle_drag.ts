@@ -158,8 +158,7 @@ export class HandleDrag {
     const { waits } = this.switching;
     const kept = drag.commit();
     const layer = (await drag.begun)?.head["layer"] as string | undefined;
-    await kept;
-    if (layer !== undefined) this.chosen.adopt(layer);
+    if ((await kept) && layer !== undefined) this.chosen.adopt(layer);
     if (waits && this.chosen.own !== null) await this.switching.exchange(this.chosen.own, this.tools.now.method);
     await this.chosen.load();
   }

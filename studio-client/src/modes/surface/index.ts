@@ -258,6 +258,7 @@ export class SurfaceMode implements Mode {
     if (!this.picking) return;
     this.paint();
     this.handle.place();
+    if (this.chosen.own === null && !this.handle.active) this.convergence.begin();
     const other = this.chosen.own === null ? (this.chosen.layer?.name ?? null) : null;
     this.side.show(this.chosen.region, this.chosen.own, other, this.chosen.unseen !== null);
     this.studio.viewport.request();

@@ -13,6 +13,7 @@ import { MeshView } from "../../view/mesh_view";
 import { SideView } from "../../view/side_view";
 import { TRANSFER_KEYS } from "../key_lists";
 import { registerMode, type Mode, type Pointer } from "../mode";
+import { MarkerPast } from "./marker_past";
 import { TransferPanel, type Keys } from "./panel";
 import { Player } from "./player";
 import { ShapeView } from "./shape_view";
@@ -36,10 +37,12 @@ class TransferMode implements Mode {
   private source: ShapeView | null = null;
   private target: ShapeView | null = null;
   private readonly player: Player;
+  private readonly past: MarkerPast;
   private readonly inspector: TransferPanel;
   private stops: (() => void)[] = [];
 
   constructor(private readonly studio: Studio) {
+    this.past = new MarkerPast(studio);
     this.player = new Player(
       studio,
       (arrays) => this.moveSource(arrays),
@@ -119,7 +122,15 @@ class TransferMode implements Mode {
     return { title: "modeTransfer", body: this.inspector.element };
   }
 
+  undo(): boolean {
+    return this.past.undo();
+  }
+
   key(event: KeyboardEvent): boolean {
+    if (event.key === "Escape" && this.player.moving) {
+      void this.player.cancel().then(() => this.loadKeys());
+      return true;
+    }
     if (event.key === "Escape" && (this.pending.source !== null || this.pending.target !== null)) {
       this.pending = { source: null, target: null };
       this.look();
@@ -138,6 +149,7 @@ class TransferMode implements Mode {
 
   private async take(state: TransferState): Promise<void> {
     const known = `${state.name}/${state.points}`;
+    this.past.follow(state);
     this.state = state;
     if (this.side && state.name === null) this.source?.mesh.clear();
     if (this.side && state.name !== null && this.shown !== known) {

@@ -37,6 +37,18 @@ export class Player {
     this.moved(weights);
   }
 
+  get moving(): boolean {
+    return this.drag !== null;
+  }
+
+  /** Back to the weights before. */
+  async cancel(): Promise<void> {
+    const { drag } = this;
+    this.playing = false;
+    this.drag = null;
+    await drag?.cancel();
+  }
+
   /** Keep the weights as they are now: one entry of the history. */
   async stop(): Promise<void> {
     const { drag } = this;
