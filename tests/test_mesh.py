@@ -122,6 +122,22 @@ def test_contradictions_are_named(arguments, message):
         PolygonMesh(**arguments)
 
 
+@pytest.mark.parametrize(
+    ("arguments", "words"),
+    [
+        ({"points": "abc"}, "points is 'abc'; numbers are needed"),
+        ({"points": [[0, 0, 0], [1, 1]]}, "in rows of one length"),
+        ({"points": [[0, 0, 0]], "faces": [["a", 0, 0]]}, "rows of vertex indices are needed"),
+        ({"points": [[0, 0, 0]], "faces": 5}, "the faces are 5"),
+        ({"points": [[0, 0, 0]], "faces": [[0, 0, 2**40]]}, "rows of vertex indices are needed"),
+        ({"points": [[0, 0, 0]], "lines": ["ab"]}, "the lines are"),
+    ],
+)
+def test_what_is_no_number_is_refused_by_name(arguments, words):
+    with pytest.raises(InvalidMesh, match=words):
+        PolygonMesh(**arguments)
+
+
 def test_corner_values_and_labels():
     values = CornerValues([[1.0, 2.0]], [0, -1])
     assert np.array_equal(values.per_corner, [[1, 2], [np.nan, np.nan]], equal_nan=True)

@@ -16,6 +16,7 @@ from scipy.sparse.linalg import LinearOperator
 
 from pliant.errors import InvalidControls, InvalidTarget, NonFiniteResult
 from pliant.mesh import CornerValues, Points, PolygonMesh, as_points
+from pliant.numerics.given import as_numbers
 from pliant.numerics.maps.newton import Solution, solve
 from pliant.numerics.maps.normals import carry_normals
 
@@ -245,9 +246,9 @@ def checked_controls(controls: ArrayLike, shape: tuple[int, ...]) -> Controls:
     Raises
     ------
     InvalidControls
-        Another shape, or values that are not finite.
+        No numbers, another shape, or values that are not finite.
     """
-    array = np.ascontiguousarray(controls, np.float64)
+    array = np.ascontiguousarray(as_numbers("controls", controls, InvalidControls))
     if array.shape != shape:
         raise InvalidControls(f"controls have shape {array.shape}; this deformer's have {shape}")
     if not np.isfinite(array).all():

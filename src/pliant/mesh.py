@@ -22,8 +22,15 @@ from pliant.attributes import CornerValues as CornerValues
 from pliant.attributes import FaceLabels as FaceLabels
 from pliant.attributes import Material as Material
 from pliant.errors import InvalidMesh
+from pliant.numerics.given import as_numbers
 from pliant.numerics.meshes.adjacency import edge_use, neighbors, unique_edges
-from pliant.numerics.meshes.soundness import checked_points, require_cells, require_length, require_vertices
+from pliant.numerics.meshes.soundness import (
+    checked_points,
+    checked_rows,
+    require_cells,
+    require_length,
+    require_vertices,
+)
 from pliant.numerics.meshes.triangulation import polygon_normals, triangulate
 from pliant.numerics.ragged import Ragged, frozen
 
@@ -81,11 +88,11 @@ class PolygonMesh:
     carrier: Any = None
 
     def __post_init__(self) -> None:
-        given = np.asarray(self.points, np.float64)
+        given = as_numbers("points", self.points, InvalidMesh)
         points = checked_points(given if given.size else np.empty((0, 3)))
-        self._set(points=frozen(points, np.float64), faces=Ragged.of(self.faces))
+        self._set(points=frozen(points, np.float64), faces=checked_rows(self.faces, "face"))
         if self.lines is not None:
-            self._set(lines=Ragged.of(self.lines))
+            self._set(lines=checked_rows(self.lines, "line"))
         require_vertices(self.faces, len(points), "face")
         require_vertices(self.lines, len(points), "line")
         for kind, rows in self.cells.items():

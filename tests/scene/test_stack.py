@@ -225,7 +225,7 @@ def test_edits_give_other_stacks():
         (lambda s: s.replace("warp", envelope=np.nan), "envelope of layer 'warp' is nan"),
         (lambda s: s.replace("warp", envelope="much"), "'much', no number"),
         (lambda s: s.replace("warp", mask=[[1.0]]), r"mask of layer 'warp' has shape \(1, 1\)"),
-        (lambda s: s.replace("warp", mask=["a"]), "no array of numbers"),
+        (lambda s: s.replace("warp", mask=["a"]), "numbers are needed"),
         (lambda s: pl.Scene(MESH, s, selections={"top": [0, 999]}), "'top' holds vertex 999"),
         (lambda s: pl.Scene(MESH, s, selections={"top": [0.5]}), "'top' holds vertex indices"),
     ],

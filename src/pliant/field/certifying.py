@@ -14,6 +14,7 @@ from pliant.field.grids import checked_box
 from pliant.field.polynomial_range import Extreme, Range, determinant_range
 from pliant.field.rules import certificate_by_rule
 from pliant.mesh import Points
+from pliant.numerics.given import as_numbers
 from pliant.numerics.lattices.determinants import Determinants
 from pliant.numerics.lattices.polynomial_cells import PolynomialCells
 
@@ -72,7 +73,8 @@ def certify(
     NonFiniteResult
         The displacements are so large that det J overflows.
     """
-    if budget < 0 or not 0 < tolerance < 1:
+    most, part = as_numbers("budget", budget, InvalidParameter), as_numbers("tolerance", tolerance, InvalidParameter)
+    if most.shape or part.shape or not most >= 0 or not 0 < part < 1:
         raise InvalidParameter(f"budget is 0 or more, tolerance between 0 and 1; given: {budget}, {tolerance}")
     if not isinstance(deformer, SpaceDeformer):
         raise NotDifferentiable(f"{type(deformer).__name__} is no map of R^3 and has no Jacobian: nothing to certify")

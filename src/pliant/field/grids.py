@@ -13,6 +13,7 @@ from pliant.deformer import SpaceDeformer
 from pliant.errors import InvalidParameter
 from pliant.io.report import LossReport
 from pliant.mesh import Points, PolygonMesh
+from pliant.numerics.given import as_numbers
 from pliant.numerics.ragged import Ragged, frozen
 
 AXES = "xyz"
@@ -118,7 +119,7 @@ def checked_box(bounds: tuple[ArrayLike, ArrayLike]) -> tuple[Points, Points]:
     InvalidParameter
         Another shape, corners that are not finite, or a highest corner below the lowest.
     """
-    corners = np.asarray(bounds, np.float64)
+    corners = as_numbers("bounds", bounds, InvalidParameter)
     if corners.shape != (2, 3) or not np.isfinite(corners).all() or (corners[0] > corners[1]).any():
         raise InvalidParameter(f"bounds are a lowest and a highest corner, (3,) each and finite; given: {bounds!r}")
     return corners[0], corners[1]
@@ -132,7 +133,7 @@ def checked_spacing(spacing: float | ArrayLike) -> Points:
     InvalidParameter
         Other shapes, or values that are not positive and finite.
     """
-    given = np.asarray(spacing, np.float64)
+    given = as_numbers("spacing", spacing, InvalidParameter)
     if given.shape not in {(), (3,)} or not (np.isfinite(given) & (given > 0)).all():
         raise InvalidParameter(f"spacing is one positive number, or one an axis; given: {spacing!r}")
     return np.broadcast_to(given, (3,))
@@ -174,7 +175,10 @@ def _sections(ticks: list[Points], planes: Mapping[str, float | Sequence[float]]
     for name, places in planes.items():
         if name not in AXES or len(name) != 1:
             raise InvalidParameter(f"a plane is named by its axis, x, y or z; given: {name!r}")
-        for place in np.atleast_1d(np.asarray(places, np.float64)):
+        found = np.atleast_1d(as_numbers(f"planes[{name!r}]", places, InvalidParameter))
+        if found.ndim != 1 or not np.isfinite(found).all():
+            raise InvalidParameter(f"planes[{name!r}] is {places!r}; one finite number or several are needed")
+        for place in found:
             yield [np.array([place]) if axis == AXES.index(name) else ticks[axis] for axis in range(3)]
 
 

@@ -13,6 +13,7 @@ from pliant.deformer import Deformer, SpaceDeformer
 from pliant.errors import InvalidControls, InvalidParameter, InvalidTarget
 from pliant.mesh import Points
 from pliant.numerics.compute.chunks import for_chunks
+from pliant.numerics.given import as_numbers
 from pliant.numerics.ragged import frozen
 from pliant.scene.keys import key_of, structure_key
 
@@ -176,10 +177,7 @@ def blended(before: Points, after: Points, strength: Strength) -> Points:
 
 
 def _checked_mask(mask: ArrayLike, name: str) -> Floats:
-    try:
-        array = np.asarray(mask, np.float64)
-    except (TypeError, ValueError) as error:
-        raise InvalidParameter(f"the mask of layer {name!r} is no array of numbers") from error
+    array = as_numbers(f"the mask of layer {name!r}", mask, InvalidParameter)
     if array.ndim != 1 or not np.isfinite(array).all():
         raise InvalidParameter(f"the mask of layer {name!r} has shape {array.shape}; (n,) finite weights are needed")
     return frozen(array, np.float64)

@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike
 
 from pliant.errors import InvalidParameter
 from pliant.mesh import PolygonMesh
+from pliant.numerics.given import as_numbers
 from pliant.shape.basis import FullBasis, ScalarBasis
 from pliant.shape.decimation import decimated
 from pliant.shape.domain import Interpolation, carriers, submesh
@@ -82,7 +83,7 @@ class ChangeableModel(LinearModel):
         InvalidParameter
             Another shape, or numbers that are not finite.
         """
-        affine = np.asarray(matrix, np.float64)
+        affine = as_numbers("matrix", matrix, InvalidParameter)
         if affine.shape not in ((3, 4), (4, 4)) or not np.isfinite(affine).all():
             raise InvalidParameter(f"an affine map is a finite (3, 4) or (4, 4) matrix, not {affine.shape}")
         linear, shift = affine[:3, :3], affine[:3, 3]

@@ -7,6 +7,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pliant.errors import InvalidParameter, NotConverged
 from pliant.mesh import as_points
+from pliant.numerics.given import as_numbers
 
 Floats = NDArray[np.float64]
 
@@ -31,7 +32,7 @@ def align(source: ArrayLike, target: ArrayLike, *, scale: bool = False, weights:
     one, two = as_points(source), as_points(target)
     if one.shape != two.shape or len(one) < 3:
         raise InvalidParameter(f"{len(one)} points are aligned with {len(two)}: at least three pairs are needed")
-    share = np.ones(len(one)) if weights is None else np.asarray(weights, np.float64)
+    share = np.ones(len(one)) if weights is None else as_numbers("weights", weights, InvalidParameter)
     if share.shape != (len(one),) or not np.isfinite(share).all() or (share < 0).any() or not share.sum() > 0:
         raise InvalidParameter("weights must be one number a pair, none negative and not all zero")
     return _aligned(one, two, share / share.sum(), scale=scale)
@@ -84,7 +85,7 @@ def generalized_procrustes(
     NotConverged
         More iterations are needed.
     """
-    stacked = np.asarray(shapes, np.float64)
+    stacked = as_numbers("shapes", shapes, InvalidParameter)
     if stacked.ndim != 3 or stacked.shape[2] != 3 or not len(stacked) or not np.isfinite(stacked).all():
         raise InvalidParameter(f"shapes are (s, n, 3) finite numbers, not of shape {stacked.shape}")
     mean = stacked[0]

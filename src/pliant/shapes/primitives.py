@@ -10,6 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from pliant.attributes import FaceLabels
 from pliant.errors import InvalidMesh, InvalidParameter
 from pliant.mesh import Points, PolygonMesh
+from pliant.numerics.given import as_numbers
 from pliant.shapes.grids import cube_sphere, lathe, ring_of_rings
 from pliant.shapes.tree import Leaf, Solid
 
@@ -126,9 +127,10 @@ def cone(
         As for :func:`sphere`, or a radius at the top below zero.
     """
     r, h = _lengths("radius", radius, 1)[0], _lengths("height", height, 1)[0]
-    if not 0 <= top < np.inf:
+    upper = as_numbers("top", top, InvalidParameter)
+    if upper.shape or not 0 <= upper < np.inf:
         raise InvalidParameter(f"the top radius is {top}; it must be 0 or a length")
-    points, faces = lathe(np.array([r, float(top)]), np.array([-h / 2, h / 2]), _count(segments))
+    points, faces = lathe(np.array([r, float(upper)]), np.array([-h / 2, h / 2]), _count(segments))
     return _leaf(points, faces, center, name)
 
 
@@ -237,7 +239,7 @@ def solid(mesh: PolygonMesh, *, name: str = "solid") -> Solid:
 
 
 def _leaf(points: Points, faces: Any, center: ArrayLike, name: str) -> Solid:
-    middle = np.asarray(center, np.float64)
+    middle = as_numbers("the center", center, InvalidParameter)
     if middle.shape != (3,) or not np.isfinite(middle).all():
         raise InvalidParameter(f"the center is {center!r}; three finite numbers are needed")
     return Leaf(_named(PolygonMesh(points + middle, faces), name))
@@ -249,18 +251,18 @@ def _named(mesh: PolygonMesh, name: str) -> PolygonMesh:
 
 def _lengths(name: str, value: Any, count: int) -> NDArray[np.float64]:
     """(count,) positive lengths."""
-    try:
-        found = np.broadcast_to(np.asarray(value, np.float64), (count,))
-    except (TypeError, ValueError) as error:
-        raise InvalidParameter(f"{name} is {value!r}; {count} positive lengths are needed") from error
+    given = as_numbers(name, value, InvalidParameter)
+    if given.shape not in ((), (1,), (count,)):
+        raise InvalidParameter(f"{name} has shape {given.shape}; {count} positive lengths are needed")
+    found = np.broadcast_to(given, (count,))
     if not (np.isfinite(found).all() and (found > 0).all()):
         raise InvalidParameter(f"{name} is {value!r}; lengths must be positive and finite")
     return found
 
 
 def _count(segments: int) -> int:
-    if not 3 <= segments <= _MOST:
-        raise InvalidParameter(f"segments is {segments}; it lies between 3 and {_MOST}")
+    if not isinstance(segments, int | float | np.integer) or not 3 <= segments <= _MOST:
+        raise InvalidParameter(f"segments is {segments!r}; it is a number between 3 and {_MOST}")
     return int(segments)
 
 

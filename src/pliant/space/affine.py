@@ -19,8 +19,9 @@ from pliant.deformer import (
 )
 from pliant.errors import InvalidDeformer
 from pliant.mesh import Points, as_points
+from pliant.numerics.given import as_numbers
 from pliant.numerics.ragged import frozen
-from pliant.space.axes import unit_axis
+from pliant.space.axes import one_number, unit_axis
 
 Matrix = NDArray[np.float64]
 Axis = Literal["x", "y", "z"] | ArrayLike
@@ -104,6 +105,7 @@ class Affine(SpaceDeformer):
             The axis is none, or a number is not finite.
         """
         x, y, z = unit_axis(axis)
+        angle = one_number("angle", angle)
         cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
         linear = np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross  # Rodrigues' formula
         return cls._about(linear, origin)
@@ -226,10 +228,7 @@ class AffineBinding(LinearBinding):
 
 
 def _array(name: str, values: ArrayLike, shape: tuple[int, ...]) -> NDArray[np.float64]:
-    try:
-        array = np.asarray(values, np.float64)
-    except (TypeError, ValueError) as error:
-        raise InvalidDeformer(f"{name} is {values!r}; {shape} numbers are needed") from error
+    array = as_numbers(name, values, InvalidDeformer)
     if array.shape != shape:
         raise InvalidDeformer(f"{name} has shape {array.shape}; {shape} is needed")
     return array

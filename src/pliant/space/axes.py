@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pliant.errors import InvalidDeformer, InvalidTarget
 from pliant.mesh import PolygonMesh, as_points
+from pliant.numerics.given import as_numbers
 
 Floats = NDArray[np.float64]
 
@@ -23,7 +24,7 @@ def one_number(name: str, value: Any) -> float:
     """
     try:
         number = float(value)
-    except (TypeError, ValueError) as error:
+    except (TypeError, ValueError, OverflowError) as error:
         raise InvalidDeformer(f"{name} is {value!r}; a number is needed") from error
     if not np.isfinite(number):
         raise InvalidDeformer(f"{name} is {number}; a finite number is needed")
@@ -38,10 +39,7 @@ def three_numbers(name: str, values: ArrayLike) -> Floats:
     InvalidDeformer
         Anything else.
     """
-    try:
-        array = np.asarray(values, np.float64)
-    except (TypeError, ValueError) as error:
-        raise InvalidDeformer(f"{name} is {values!r}; three numbers are needed") from error
+    array = as_numbers(name, values, InvalidDeformer)
     if array.shape != (3,) or not np.isfinite(array).all():
         raise InvalidDeformer(f"{name} is {array.tolist()}; three finite numbers are needed")
     return array

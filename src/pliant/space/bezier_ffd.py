@@ -15,13 +15,14 @@ from numpy.typing import ArrayLike, NDArray
 from pliant.deformer import Controls, Target
 from pliant.errors import InvalidDeformer, OutsideDomain
 from pliant.mesh import Points, PolygonMesh, as_points
+from pliant.numerics.given import as_numbers
 from pliant.numerics.lattices.bases import BernsteinPoints
 from pliant.numerics.lattices.cells import BERNSTEIN, CellGrid, CellPoints
 from pliant.numerics.lattices.lattice_inverse import LatticeNewton
 from pliant.numerics.lattices.polynomial_cells import PolynomialCells
 from pliant.numerics.maps.newton import Solution, solve
 from pliant.numerics.ragged import frozen
-from pliant.space.box import box_around, checked_axes, thickened
+from pliant.space.box import box_around, checked_axes, checked_counts, thickened
 from pliant.space.control_lattice import ControlLattice, spread
 from pliant.space.control_maps import Padding
 from pliant.space.lattice import LatticeBinding
@@ -67,10 +68,11 @@ class BezierFFD(ControlLattice):
     outside: Outside = "identity"
 
     def __post_init__(self) -> None:
-        displacements = np.asarray(self.displacements, np.float64)
+        displacements = as_numbers("the lattice's displacements", self.displacements, InvalidDeformer)
         if displacements.ndim != 4 or displacements.shape[3] != 3 or 0 in displacements.shape:
             raise InvalidDeformer(f"lattice displacements have shape {displacements.shape}; (l, m, n, 3) is needed")
-        origin, edges = np.asarray(self.origin, np.float64), np.asarray(self.edges, np.float64)
+        origin = as_numbers("the lattice's origin", self.origin, InvalidDeformer)
+        edges = as_numbers("the lattice's edges", self.edges, InvalidDeformer)
         if origin.shape != (3,) or edges.shape != (3, 3):
             raise InvalidDeformer(
                 f"origin and edges have shapes {origin.shape}, {edges.shape}; (3,), (3, 3) are needed"
@@ -126,11 +128,9 @@ class BezierFFD(ControlLattice):
         """
         if shape is not None and patches is not None:
             raise InvalidDeformer("give either a shape or numbers of patches: 3 patches + 1 is the shape")
+        counts = checked_counts((4, 4, 4) if shape is None else shape)
         if patches is not None:
-            shape = (3 * patches[0] + 1, 3 * patches[1] + 1, 3 * patches[2] + 1)
-        counts = (4, 4, 4) if shape is None else tuple(shape)
-        if len(counts) != 3 or min(counts) < 1 or (patches is not None and min(patches) < 1):
-            raise InvalidDeformer(f"a lattice needs at least one control point an axis; its shape is {counts}")
+            counts = tuple(3 * count + 1 for count in checked_counts(patches))
         frame = checked_axes(axes)
         origin, extent = box_around(target, frame, margin)
         thick = thickened(extent)

@@ -16,7 +16,7 @@ from pliant.numerics.compute.chunks import for_chunks
 from pliant.numerics.lattices.patch_surface import PatchSurface, bernstein_sum, bernstein_transpose
 from pliant.numerics.ragged import frozen
 from pliant.space.bezier_ffd import TOLERANCE, Outside
-from pliant.space.box import box_around, thickened
+from pliant.space.box import box_around, checked_counts, thickened
 from pliant.space.control_lattice import ControlLattice
 
 Floats = NDArray[np.float64]
@@ -106,7 +106,7 @@ class BezierPatchFFD(ControlLattice):
         """
         if axis not in AXES:
             raise InvalidDeformer(f"axis is {axis!r}; it must be 'x', 'y' or 'z'")
-        if len(shape) != 2 or min(shape) < 2:
+        if min(checked_counts(shape, 2)) < 2:
             raise InvalidDeformer(f"a patch needs two control points or more along both edges; its shape is {shape}")
         frame = np.eye(3)[:, AXES[axis]]
         origin, extent = box_around(target, frame, margin)

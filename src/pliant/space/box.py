@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from operator import index
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pliant.errors import InvalidDeformer
 from pliant.mesh import PolygonMesh
-from pliant.space.axes import extent_along
+from pliant.space.axes import extent_along, one_number
 
 Floats = NDArray[np.float64]
 
@@ -34,10 +37,33 @@ def box_around(target: PolygonMesh | ArrayLike, axes: Floats, margin: float) -> 
     ------
     InvalidTarget
         No points.
+    InvalidDeformer
+        A margin that is no finite number above -0.5.
     """
     low, high = extent_along(target, axes)
-    grown = margin * (high - low)
+    grown = one_number("margin", margin) * (high - low)
+    if not (np.isfinite(grown).all() and margin > -0.5):
+        raise InvalidDeformer(f"margin is {margin}; it is a part of the box, above -0.5: nothing would be left of it")
     return axes @ (low - grown), high - low + 2 * grown
+
+
+def checked_counts(shape: Sequence[int], axes: int = 3) -> tuple[int, ...]:
+    """Numbers of control points, one for each of some axes.
+
+    Raises
+    ------
+    InvalidDeformer
+        No whole numbers, another number of them, or one below one.
+    """
+    try:
+        counts = tuple(index(count) for count in shape)
+    except TypeError as error:
+        raise InvalidDeformer(
+            f"a lattice's shape is {shape!r}; {axes} whole numbers of control points are needed"
+        ) from error
+    if len(counts) != axes or min(counts) < 1:
+        raise InvalidDeformer(f"a lattice needs at least one control point an axis; its shape is {counts}")
+    return counts
 
 
 def thickened(extent: Floats) -> Floats:

@@ -16,12 +16,13 @@ from numpy.typing import ArrayLike, NDArray
 from pliant.deformer import Controls, Target
 from pliant.errors import InvalidDeformer
 from pliant.mesh import Points, PolygonMesh, as_points
+from pliant.numerics.given import as_numbers
 from pliant.numerics.lattices.cells import BSPLINE, CellGrid, CellPoints, evaluate_once
 from pliant.numerics.lattices.lattice_inverse import LatticeNewton
 from pliant.numerics.lattices.polynomial_cells import PolynomialCells
 from pliant.numerics.maps.newton import Solution, solve
 from pliant.numerics.ragged import frozen
-from pliant.space.box import box_around, checked_axes, thickened
+from pliant.space.box import box_around, checked_axes, checked_counts, thickened
 from pliant.space.control_lattice import ControlLattice, spaced
 from pliant.space.control_maps import Padding
 from pliant.space.lattice import LatticeBinding
@@ -127,15 +128,13 @@ class BSplineFFD(ControlLattice):
             No points.
         """
         frame = checked_axes(axes)
-        counts = np.array(shape)
-        if counts.shape != (3,) or (counts < 1).any():
-            raise InvalidDeformer(f"a lattice needs at least one control point an axis; its shape is {shape}")
+        counts = np.array(checked_counts(shape))
         origin, extent = box_around(target, frame, margin)
         thick = thickened(extent)
         middle = np.where((counts == 1) | (extent < thick), extent / 2 - thick * (counts > 1) / 2, 0.0)
         spacing = thick / np.maximum(counts - 1, 1)
         return cls(
-            displacements=np.zeros((*shape, 3)), origin=origin + frame @ middle, spacing=spacing, axes=frame, edge=edge
+            displacements=np.zeros((*counts, 3)), origin=origin + frame @ middle, spacing=spacing, axes=frame, edge=edge
         )
 
     @cached_property
@@ -233,7 +232,7 @@ def _refine(values: Floats, axis: int, edge: Edge) -> tuple[Floats, int]:
 
 
 def _lattice_values(values: ArrayLike) -> Floats:
-    array = np.asarray(values, np.float64)
+    array = as_numbers("the lattice's displacements", values, InvalidDeformer)
     if array.ndim != 4 or array.shape[3] != 3 or 0 in array.shape:
         raise InvalidDeformer(f"lattice displacements have shape {array.shape}; (nx, ny, nz, 3) is needed")
     if not np.isfinite(array).all():
@@ -242,14 +241,14 @@ def _lattice_values(values: ArrayLike) -> Floats:
 
 
 def _vector(values: ArrayLike, name: str) -> Floats:
-    array = np.asarray(values, np.float64)
+    array = as_numbers(f"the lattice's {name}", values, InvalidDeformer)
     if array.shape != (3,) or not np.isfinite(array).all():
         raise InvalidDeformer(f"lattice {name} must be three finite numbers; it is {array.tolist()}")
     return array
 
 
 def _affine(matrix: ArrayLike) -> Floats:
-    array = np.array(matrix, np.float64)
+    array = as_numbers("the affine part", matrix, InvalidDeformer)
     if array.shape != (4, 4) or not np.isfinite(array).all() or not np.array_equal(array[3], [0, 0, 0, 1]):
         raise InvalidDeformer("the affine part must be a finite (4, 4) matrix with last row 0 0 0 1")
     if np.linalg.matrix_rank(array[:3, :3]) < 3:

@@ -26,6 +26,7 @@ from pliant.deformer import (
 )
 from pliant.errors import InvalidDeformer
 from pliant.mesh import Points, as_points
+from pliant.numerics.given import as_numbers
 from pliant.numerics.maps.radial import RadialBasis
 from pliant.numerics.ragged import frozen
 from pliant.space.landmark_system import LandmarkSystem
@@ -153,10 +154,7 @@ class LandmarkBinding(PointBinding, LinearBinding):
 
 
 def _placed(name: str, values: ArrayLike) -> Floats:
-    try:
-        array = np.asarray(values, np.float64)
-    except (TypeError, ValueError) as error:
-        raise InvalidDeformer(f"{name} must be (k, 3) numbers") from error
+    array = as_numbers(name, values, InvalidDeformer)
     if array.ndim != 2 or array.shape[1] != 3 or not len(array):
         raise InvalidDeformer(f"{name} have shape {array.shape}; (k, 3) is needed, with at least one landmark")
     bad = np.flatnonzero(~np.isfinite(array).all(axis=1))

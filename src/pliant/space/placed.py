@@ -42,6 +42,8 @@ class Placed(SpaceDeformer):
                 f"a {type(self.deformer).__name__} is no map of space: it deforms the mesh that it is bound to, "
                 "wherever that is; only maps of space can be placed"
             )
+        if not isinstance(self.frame, Affine):
+            raise InvalidDeformer(f"a frame is an Affine, not a {type(self.frame).__name__}: pass Affine(matrix)")
 
     @property
     def rest(self) -> Controls:

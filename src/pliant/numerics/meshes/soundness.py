@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pliant.errors import InvalidMesh
 from pliant.numerics.compute.chunks import for_chunks
+from pliant.numerics.given import as_numbers
 from pliant.numerics.ragged import Ragged
 
 Floats = NDArray[np.float64]
@@ -29,7 +30,7 @@ def checked_points(points: ArrayLike, *, finite: bool = True) -> Floats:
     InvalidMesh
         Another shape, or a coordinate that is not finite.
     """
-    array = np.asarray(points, np.float64)
+    array = as_numbers("points", points, InvalidMesh)
     if array.shape == (0,):
         array = array.reshape(0, 3)
     if array.ndim != 2 or array.shape[1] != 3:
@@ -37,6 +38,20 @@ def checked_points(points: ArrayLike, *, finite: bool = True) -> Floats:
     if finite:
         _require_finite(array)
     return array
+
+
+def checked_rows(rows: Ragged | ArrayLike, kind: str) -> Ragged:
+    """Rows of vertex indices, of faces or lines.
+
+    Raises
+    ------
+    InvalidMesh
+        What is given is no rows of whole numbers.
+    """
+    try:
+        return Ragged.of(rows)
+    except (TypeError, ValueError, OverflowError) as error:
+        raise InvalidMesh(f"the {kind}s are {repr(rows)[:60]}; rows of vertex indices are needed") from error
 
 
 def _require_finite(points: Floats) -> None:
