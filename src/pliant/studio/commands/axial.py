@@ -14,10 +14,12 @@ from pliant.scene.keyed import tool_of
 from pliant.scene.stack import Stack
 from pliant.space.axes import unit_axis
 from pliant.space.axial import AxialDeformer
+from pliant.space.tangent_frames import TangentFrames
 from pliant.studio.dragging import Dragging, begin, cancel, commit, ongoing
 from pliant.studio.modes.axial.following import Ray, followed, snapped
 from pliant.studio.modes.axial.ghost import ghost
-from pliant.studio.modes.axial.handles import Handle, handles_of
+from pliant.studio.modes.axial.handle import Handle
+from pliant.studio.modes.axial.handles import handles_of
 from pliant.studio.modes.axial.tool import Tool, exchanged, holds, tool_on
 from pliant.studio.modes.placements import to_frame
 from pliant.studio.request import Client, Request, command
@@ -123,9 +125,10 @@ def _named(tool: Tool, name: str) -> Handle:
 def _arrays(tool: Tool) -> dict[str, NDArray[Any]]:
     """Where the handles are, what they say, and the lines."""
     handles, lines = handles_of(tool), ghost(tool)
-    return {
+    rates = {"rates": np.array(tool.deformer.rates).reshape(-1)} if isinstance(tool.deformer, TangentFrames) else {}
+    return rates | {
         "handles": np.concatenate([each.place(tool)[0] for each in handles]),
-        "values": np.array([each.read(tool)[0] for each in handles]),
+        "values": np.array([each.value(tool) for each in handles]),
         "before": lines.before.astype(np.float32).reshape(-1),
         "after": lines.after.astype(np.float32).reshape(-1),
         "offsets": lines.offsets,

@@ -5,6 +5,7 @@ import { t, tWord } from "../../core/strings";
 import { button, numberField, row, segments, shortNumber } from "../../panels/controls";
 import type { Studio } from "../../studio";
 import type { Layer } from "../../transport/protocol";
+import { ratesPanel } from "./rates";
 
 const PROFILES = ["ramp", "smooth", "constant", "bump"] as const;
 const AXES = ["x", "y", "z"] as const;
@@ -15,7 +16,8 @@ export function axialPanel(studio: Studio): HTMLElement {
   let shown = "";
   const show = (): void => {
     const { layer } = studio;
-    const key = JSON.stringify([layer?.name, layer?.fields, layer?.kind]);
+    const rates = layer?.kind === "tangent-frames" && studio.scene?.revision; // many numbers are told by their shape
+    const key = JSON.stringify([layer?.name, layer?.fields, layer?.kind, rates]);
     if (key === shown) return;
     shown = key;
     if (!layer?.axial) replace(body, h("p", { class: "muted" }, t("noAxis")));
@@ -52,6 +54,7 @@ function rows(studio: Studio, layer: Layer): (HTMLElement | false)[] {
           }),
         ),
       ),
+    layer.kind === "tangent-frames" && ratesPanel(studio, layer),
     profile !== undefined &&
       h(
         "div",
@@ -67,7 +70,13 @@ function rows(studio: Studio, layer: Layer): (HTMLElement | false)[] {
       "div",
       { class: "button-row" },
       button(t("fitToShape"), () => void studio.ask("axial.fit", { layer: layer.name }), { icon: "frame" }),
-      button(t("straighten"), () => set(numbers), { icon: "reset" }),
+      button(t("straighten"), () => set(layer.kind === "tangent-frames" ? { rates: atRest(value("rates")) } : numbers), { icon: "reset" }),
     ),
   ];
+}
+
+/** As many segments, none of which turns or grows; a value is told by its shape where it is long. */
+function atRest(rates: unknown): number[][] {
+  const count = Array.isArray(rates) ? rates.length : Number.parseInt(String(rates), 10);
+  return Array.from({ length: count }, () => [0, 0, 0, 0]);
 }

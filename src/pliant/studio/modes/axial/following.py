@@ -12,7 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pliant.errors import PliantError
-from pliant.studio.modes.axial.handles import Handle
+from pliant.studio.modes.axial.handle import Handle
 from pliant.studio.modes.axial.tool import Tool
 
 Floats = NDArray[np.float64]

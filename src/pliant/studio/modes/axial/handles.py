@@ -1,15 +1,12 @@
 """What can be taken hold of: a small table of what each deformer's fields mean.
 
-A handle is a few numbers of a deformer and the place that follows from them. Dragging it finds the numbers at which
-the place lies under the pointer (:mod:`pliant.studio.modes.axial.following`), so that no handle needs an inverse, and a
-deformer that is new needs a line here: where its handle shall be seen.
+No handle needs an inverse, and a deformer that is new needs a line here: where its handle shall be seen.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -21,49 +18,27 @@ from pliant.space.profile import as_profile
 from pliant.space.scale import Scale
 from pliant.space.sine import Sine
 from pliant.space.squash import Squash
+from pliant.space.tangent_frames import TangentFrames
 from pliant.space.taper import Taper
 from pliant.space.twist import Twist
 from pliant.space.wave import Wave
+from pliant.studio.modes.axial.handle import Handle, Place, Unit
 from pliant.studio.modes.axial.moving import moved_to, rolled_to, turned_to
+from pliant.studio.modes.axial.segments import segment_handles
 from pliant.studio.modes.axial.tool import Tool
 
 Floats = NDArray[np.float64]
-Unit = Literal["radians", "factor", "length", "place", "direction"]
-Place = Callable[[Tool], Points]
 
 _ALONG = np.linspace(0.0, 1.0, 65)  # where profiles are looked at
 _WAVES = 64  # that are looked at
-
-
-@dataclass(frozen=True)
-class Handle:
-    """Something to take hold of.
-
-    Parameters
-    ----------
-    name
-        Of the field, or of the bound, that it sets.
-    unit
-        What its numbers are.
-    read
-        (k,) the numbers of a tool.
-    write
-        A tool with other numbers.
-    place
-        (1, 3) where a tool's handle is.
-    """
-
-    name: str
-    unit: Unit
-    read: Callable[[Tool], Floats]
-    write: Callable[[Tool, Floats], Tool]
-    place: Place
 
 
 def handles_of(tool: Tool) -> tuple[Handle, ...]:
     """The handles of a tool: its own first, then those of its axis."""
     deformer = tool.deformer
     own = next((rows for kind, rows in TABLE.items() if isinstance(deformer, kind)), ())
+    if isinstance(deformer, TangentFrames):
+        own = segment_handles(tool)
     if isinstance(deformer, Scale):
         return (*own, _ORIGIN)
     bounds = _RADII if deformer.radial else _BOUNDS
