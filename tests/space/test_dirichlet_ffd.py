@@ -176,6 +176,22 @@ def test_a_site_goes_where_it_is_moved(name, smooth):
     assert np.abs(deformer(deformer.rest) - deformer.controls).max() <= 1e-15 * scale
 
 
+@pytest.mark.parametrize("kind", ["sibson", "laplace"])
+@pytest.mark.parametrize("name", ["anywhere", "regular grid", "cospherical"])
+def test_points_beside_a_site_follow_it_at_any_distance(name, kind, random):
+    """Also where they are so close that rounding hides what they take from its cell."""
+    box = GhostBox(ARRANGEMENTS[name], 3.0, kind)
+    distances = 10.0 ** np.linspace(-16, -8, 200)
+    beside = random.integers(0, len(box.sites), len(distances))
+    directions = random.normal(size=(len(distances), 3))
+    points = box.everyone[beside] + distances[:, None] * directions
+    found = box.neighbors.at(points)
+    weights = csr_array((found.values, found.sites, found.starts), shape=(len(points), len(box.everyone))).toarray()
+    assert np.abs(weights.sum(axis=1) - 1).max() < 1e-14
+    assert np.abs(weights @ box.everyone - points).max() < 1e-10
+    assert weights[np.arange(len(points)), beside].min() > 0.99
+
+
 def test_farins_form_reproduces_quadratics(random):
     sites, points = random.random((300, 3)), random.uniform(0.3, 0.7, (500, 3))
     bowl = random.normal(size=(3, 3, 3)) * 0.1

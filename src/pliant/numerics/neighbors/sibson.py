@@ -19,6 +19,8 @@ from pliant.numerics.neighbors.sibson_pieces import join, share
 from pliant.numerics.neighbors.sibson_rows import LAPLACE, only, reproduced, weigh, write
 from pliant.numerics.neighbors.skeleton import Skeleton
 
+BESIDE = 10.0  # times the distance on a site: there, rounding may hide what a point takes from the cell
+
 
 @kernel
 def coordinates(
@@ -61,20 +63,21 @@ def coordinates(
         px, py, pz = points[n], points[n + 1], points[n + 2]
         if filled + cells.number > len(columns):
             return row
-        start, size, total = _seed(px, py, pz, seeds), 0, 0.0
+        start, size, total, settled, away = _seed(px, py, pz, seeds), 0, 0.0, False, np.inf
         for attempt in range(3):  # from a near cell; from the point's own; facet by facet
             if attempt < 2:
-                size = follow(px, py, pz, start, cells, skeleton, rounding, outlines, room)
+                size = follow(px, py, pz, start, cells, skeleton, outlines, room)
             else:
                 size = _search(px, py, pz, start, cells, rounding, outlines, room)
             total = weigh(px, py, pz, size, room, cells.sites, kind, outlines)
-            if reproduced(px, py, pz, size, room, total, cells.sites, on_site):
-                break
-            if attempt == 0:
+            settled = reproduced(px, py, pz, size, room, total, cells.sites, on_site)
+            if attempt == 0 and not settled:
                 start = _walk(px, py, pz, start, cells)
-                if _distance(px, py, pz, cells.sites, start) <= on_site:
-                    size, total = only(start, room)
-                    break
+                away = _distance(px, py, pz, cells.sites, start)
+            if settled or away <= on_site:
+                break
+        if not settled and (away <= BESIDE * on_site or not total > 0.0):
+            size, total = only(start, room)
         filled = write(size, room, total, limit, differentiate, filled, columns, values, slopes)
         row_ends[row] = filled
     return len(order)

@@ -13,7 +13,7 @@ from pliant.numerics.neighbors.sibson_pieces import join, outline
 
 
 @inlined
-def follow(px, py, pz, start, cells, skeleton, rounding, outlines, room):
+def follow(px, py, pz, start, cells, skeleton, outlines, room):
     """Sums of all cells that lose something to a point; how many they are, or 0 where the first says nothing.
 
     Parameters
@@ -23,14 +23,12 @@ def follow(px, py, pz, start, cells, skeleton, rounding, outlines, room):
     cells, skeleton
         :class:`pliant.numerics.neighbors.cell_arrays.CellArrays` and
         :class:`pliant.numerics.neighbors.skeleton.Skeleton`, as pointers.
-    rounding
-        Distance within which a corner lies on the cut.
     outlines
         Whether areas of cuts and gradients are wanted too.
     room
         As in :class:`pliant.numerics.neighbors.natural_neighbors.Workspace`, as pointers.
     """
-    seen, queued = _begin(px, py, pz, start, cells, skeleton, rounding, room)
+    seen, queued = _begin(px, py, pz, start, cells, skeleton, room)
     facets = 0
     while queued > 0:
         queued -= 1
@@ -41,7 +39,7 @@ def follow(px, py, pz, start, cells, skeleton, rounding, outlines, room):
             there = room.met[end] - room.stamps[0]
             if there < 0:
                 there = seen
-                seen, queued = _meet(end, px, py, pz, seen, queued, cells, skeleton, rounding, room)
+                seen, queued = _meet(end, px, py, pz, seen, queued, cells, skeleton, room)
             if room.signed[there] > 0.0:
                 if corner < end:  # from the other end, it comes by again
                     facets = _whole(edge, facets, skeleton, room)
@@ -56,28 +54,25 @@ def follow(px, py, pz, start, cells, skeleton, rounding, outlines, room):
 
 
 @inlined
-def _begin(px, py, pz, start, cells, skeleton, rounding, room):
+def _begin(px, py, pz, start, cells, skeleton, room):
     """Meet the corners of a cell until one of them is nearer to the point: how many were met, and wait."""
     seen, queued = 0, 0
     for at in range(skeleton.cell_starts[start], skeleton.cell_starts[start + 1]):
-        seen, queued = _meet(skeleton.cell_corners[at], px, py, pz, seen, queued, cells, skeleton, rounding, room)
+        seen, queued = _meet(skeleton.cell_corners[at], px, py, pz, seen, queued, cells, skeleton, room)
         if queued > 0:
             break
     return seen, queued
 
 
 @inlined
-def _meet(corner, px, py, pz, seen, queued, cells, skeleton, rounding, room):
+def _meet(corner, px, py, pz, seen, queued, cells, skeleton, room):
     """Remember where a corner is, seen from the point, and how much nearer it is to it; if it is, it waits."""
     site = 3 * skeleton.anchors[corner]
     dx, dy, dz = px - cells.sites[site], py - cells.sites[site + 1], pz - cells.sites[site + 2]
     x, y, z = skeleton.places[3 * corner], skeleton.places[3 * corner + 1], skeleton.places[3 * corner + 2]
-    square = dx * dx + dy * dy + dz * dz
-    nearer = x * dx + y * dy + z * dz - 0.5 * square
+    nearer = x * dx + y * dy + z * dz - 0.5 * (dx * dx + dy * dy + dz * dz)
     room.met[corner] = room.stamps[0] + seen
     room.apart[3 * seen], room.apart[3 * seen + 1], room.apart[3 * seen + 2] = x - dx, y - dy, z - dz
-    if nearer * nearer <= rounding * rounding * square:
-        nearer = 0.0
     room.signed[seen] = nearer
     if nearer > 0.0:
         room.waiting[queued] = corner

@@ -61,9 +61,9 @@ def reproduced(px, py, pz, size, room, total, sites, on_site):
         site, weight = 3 * room.found[at], room.sums[8 * at]
         dx, dy, dz = sites[site] - px, sites[site + 1] - py, sites[site + 2] - pz
         x, y, z = x + weight * dx, y + weight * dy, z + weight * dz
-        distance = abs(dx) + abs(dy) + abs(dz)
-        spread, least = spread + weight * distance, min(least, distance)
-    return total > 0.0 and least > 2.0 * on_site and abs(x) + abs(y) + abs(z) <= 1e-11 * spread
+        spread += weight * (abs(dx) + abs(dy) + abs(dz))
+        least = min(least, dx * dx + dy * dy + dz * dz)
+    return total > 0.0 and least > on_site * on_site and abs(x) + abs(y) + abs(z) <= 1e-12 * spread
 
 
 @inlined
