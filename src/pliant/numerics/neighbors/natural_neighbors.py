@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from pliant.numerics.compute.chunks import for_chunks
 from pliant.numerics.neighbors.cell_arrays import CellArrays, flat_cells
 from pliant.numerics.neighbors.skeleton import Skeleton
-from pliant.numerics.neighbors.voronoi import VoronoiCells
+from pliant.numerics.neighbors.voronoi import VoronoiCells, nearest_sites
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.int64]
@@ -203,5 +203,5 @@ class NaturalNeighbors:
         low, extent = sites.min(axis=0), np.ptp(sites, axis=0)
         side = int(np.clip(np.ceil((64 * len(sites)) ** (1 / 3)), 4, 40))  # 16 bits: they sort fast
         middles = np.stack(np.meshgrid(*[(np.arange(side) + 0.5) / side] * 3, indexing="ij"), axis=-1).reshape(-1, 3)
-        near = cKDTree(sites).query(low + middles * extent)[1].astype(np.int32)
+        near = nearest_sites(cKDTree(sites), low + middles * extent)
         return SeedGrid(low, side / extent, side, near)

@@ -8,6 +8,7 @@ until there are none.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -107,6 +108,17 @@ class _Cell:
 _NOTHING = _Cell(np.empty(0, np.int32), np.empty((0, 3)), np.empty(0), np.empty(0, np.int64), np.empty((0, 3)))
 
 
+def nearest_sites(tree: Any, points: Floats) -> NDArray[np.int32]:
+    """(n,) the sites nearest to (n, 3) points, by a k-d tree, on all processors."""
+    found = np.empty(len(points), np.int32)
+
+    def work(start: int, stop: int) -> None:
+        found[start:stop] = tree.query(points[start:stop])[1]
+
+    for_chunks(work, len(points), 2048)
+    return found
+
+
 def _sorted(sites: Floats, own: int, others: Integers) -> Integers:
     """Other sites, the nearest first."""
     others = others[others != own]
@@ -148,13 +160,13 @@ def _cut(chosen: Integers, sites: Floats, candidates: list[Integers], wall: floa
 
 
 def _find_offenders(
-    tree: object, sites: Floats, chosen: Integers, cells: list[_Cell], candidates: list[Integers]
+    tree: Any, sites: Floats, chosen: Integers, cells: list[_Cell], candidates: list[Integers]
 ) -> Integers:
     """The cells of which another site cuts a corner off; that site is put among their candidates."""
     counts = [len(cell.corners) for cell in cells]
     owners = np.repeat(chosen, counts)
     local = np.concatenate([cell.corners for cell in cells])
-    nearest = tree.query(local + sites[owners])[1]  # type: ignore[attr-defined]
+    nearest = nearest_sites(tree, local + sites[owners])
     apart = sites[nearest] - sites[owners]
     length = np.linalg.norm(apart, axis=1)
     depth = np.einsum("ij,ij->i", local, apart) - length**2 / 2
