@@ -44,10 +44,10 @@ from .field.volumes import volume_gradient as volume_gradient
 from .io.cage_weights import read_binding as read_binding
 from .io.cage_weights import write_binding as write_binding
 from .io.conversion import convert_transform as convert_transform
-from .io.images import Image as Image
+from .io.image_formats.image import Image as Image
 from .io.images import read_image as read_image
 from .io.images import write_image as write_image
-from .io.landmarks import Landmarks as Landmarks
+from .io.landmark_formats.named_points import Landmarks as Landmarks
 from .io.landmarks import read_landmarks as read_landmarks
 from .io.landmarks import write_landmarks as write_landmarks
 from .io.meshes import read as read

@@ -5,50 +5,13 @@ An image is handed out in RAS, millimetres, whatever its file's convention is.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
-
-import numpy as np
-from numpy.typing import NDArray
 
 from pliant.errors import UnsupportedFormat
 from pliant.io.files import read_bytes
 from pliant.io.gzipped import beginning
+from pliant.io.image_formats.image import Image as Image
 from pliant.io.report import LossReport
-
-Floats = NDArray[np.float64]
-
-
-@dataclass(frozen=True, eq=False)
-class Image:
-    """A regular grid of voxels in space.
-
-    Parameters
-    ----------
-    values
-        (nx, ny, nz) or (nx, ny, nz, k): numbers of any type, k of them a voxel.
-    origin
-        (3,) the centre of voxel (0, 0, 0), RAS.
-    spacing
-        (3,) distance of the voxels' centres along each axis.
-    axes
-        (3, 3) orthonormal; its columns are the axes of the grid, RAS.
-    carrier
-        What a reader kept of the file. Opaque.
-    """
-
-    values: NDArray[Any]
-    origin: Floats
-    spacing: Floats
-    axes: Floats = field(default_factory=lambda: np.eye(3))
-    carrier: Any = None
-
-    @property
-    def shape(self) -> tuple[int, int, int]:
-        """Numbers of voxels along each axis."""
-        nx, ny, nz = self.values.shape[:3]
-        return nx, ny, nz
 
 
 def is_image(data: bytes) -> bool:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from pliant.errors import UnsupportedFormat
 from pliant.io.files import read_bytes, write_bytes
-from pliant.io.model_formats.model_tree import HDF5_START, read_tree
+from pliant.io.model_formats.model_files import HDF5_START, read_tree
 from pliant.io.model_formats.statismo import losses_of, model_of, tree_of
 from pliant.io.report import LossReport, refuse_losses
 from pliant.shape.model import ShapeModel

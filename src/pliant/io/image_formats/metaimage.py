@@ -14,8 +14,8 @@ from numpy.typing import NDArray
 
 from pliant.errors import UnreadableFile, UnsupportedFormat
 from pliant.io.files import read_bytes, write_bytes
+from pliant.io.image_formats.image import Image
 from pliant.io.image_formats.orientation import orthonormal
-from pliant.io.images import Image
 from pliant.io.map_formats.anatomy import SIGNS
 from pliant.io.map_formats.words import numbers, spaced
 from pliant.io.report import LossReport

@@ -15,8 +15,8 @@ from numpy.typing import NDArray
 from pliant.errors import MissingExtra, UnreadableFile, UnsupportedFormat
 from pliant.io.files import write_bytes
 from pliant.io.gzipped import beginning, inflated
+from pliant.io.image_formats.image import Image
 from pliant.io.image_formats.orientation import split_matrix
-from pliant.io.images import Image
 from pliant.io.report import LossReport
 
 Floats = NDArray[np.float64]

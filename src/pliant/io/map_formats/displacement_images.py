@@ -9,7 +9,7 @@ import numpy as np
 
 from pliant.deformer import Deformer
 from pliant.errors import UnsupportedFormat
-from pliant.io.images import Image
+from pliant.io.image_formats.image import Image
 from pliant.io.map_formats.transform_options import ReadOptions
 from pliant.io.map_formats.words import require_usable
 from pliant.space.displacement_grid import DisplacementGrid

@@ -16,9 +16,9 @@ from numpy.typing import NDArray
 
 from pliant.deformer import Deformer, SpaceDeformer
 from pliant.errors import UnreadableFile, UnsupportedFormat
+from pliant.io.image_formats.image import Image
 from pliant.io.image_formats.nifti import matrix_of, read_nifti, write_nifti
 from pliant.io.image_formats.orientation import split_matrix
-from pliant.io.images import Image
 from pliant.io.map_formats.anatomy import SIGNS
 from pliant.io.map_formats.displacement_images import NOTE, grid_of, image_of_grid
 from pliant.io.map_formats.file_facts import FileFacts

@@ -13,8 +13,6 @@ from pliant.errors import UnreadableFile
 
 Value = NDArray[Any] | str
 
-HDF5_START = b"\x89HDF\r\n\x1a\n"
-
 
 @dataclass
 class Tree:
@@ -50,27 +48,6 @@ class Tree:
         if value.dtype.kind == "f" and not np.isfinite(value).all():
             raise UnreadableFile(path, f"{place} holds numbers that are not finite", "the file is damaged")
         return value
-
-
-def read_tree(path: Path, data: bytes) -> Tree:
-    """The contents of a file, told apart by its first bytes: a name that ends in .h5 may hold JSON.
-
-    Raises
-    ------
-    UnreadableFile
-        Neither, or damaged.
-    MissingExtra
-        h5py is not installed.
-    """
-    if data.startswith(HDF5_START):
-        from pliant.io.model_formats.model_hdf5 import from_hdf5
-
-        return from_hdf5(path, data)
-    if data.lstrip()[:1] == b"{":
-        from pliant.io.model_formats.model_json import from_json
-
-        return from_json(path, data)
-    raise UnreadableFile(path, "it is neither HDF5 nor JSON", "statismo and Scalismo models are .h5 or .h5.json")
 
 
 def simple(value: Any) -> Value | None:

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from pliant.errors import UnreadableFile
-from pliant.io.landmarks import Landmarks, Space, Written, lost, numbers, told
+from pliant.io.landmark_formats.named_points import Landmarks, Space, Written, lost, numbers, told
 
 _COLUMNS = "id,x,y,z,ow,ox,oy,oz,vis,sel,lock,label,desc,associatedNodeID"
 _NAMES = {"name", "label", "id", "landmark"}

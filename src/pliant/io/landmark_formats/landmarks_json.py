@@ -10,7 +10,7 @@ import orjson
 from numpy.typing import NDArray
 
 from pliant.errors import UnreadableFile
-from pliant.io.landmarks import Landmarks, Space, Written, lost, numbers, told
+from pliant.io.landmark_formats.named_points import Landmarks, Space, Written, lost, numbers, told
 
 Floats = NDArray[np.float64]
 
