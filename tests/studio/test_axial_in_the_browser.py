@@ -94,3 +94,33 @@ def test_control_snaps_a_twist_to_fifteen_degrees_and_escape_gives_it_back(launc
         assert time.monotonic() < end, "the shape did not go back"
         time.sleep(0.05)
     assert page.session.revision == revision + 1
+
+
+def test_an_axis_is_bent_segment_by_segment(launched, view):
+    page = view(launched(pl.Scene(bar())))
+    entered(page)
+    revision = page.session.revision
+    page.page.get_by_role("button", name="Bend segment by segment").click()
+    page.committed(revision)
+    page.page.get_by_role("radio", name="x", exact=True).click()
+    page.committed(revision + 1)
+    page.ask("window.pliantStudio.look(0.5, -1, 0.5)")
+    start = at(page, "#4")
+    page.drag(start, (8, -40), steps=6)
+    page.committed(revision + 2)
+    x, y = at(page, "#4")
+    assert np.hypot(x - start[0] - 8, y - start[1] + 40) < 8  # under the pointer
+    (layer,) = page.session.scene.stack
+    rates = np.array(layer.deformer.rates)
+    assert np.flatnonzero(rates.any(axis=1)).tolist() == [3]
+    same_points(page)
+    page.until("document.querySelectorAll('.rate-row rect').length === 32")
+    bars = page.page.locator(".rate-row svg").nth(2).bounding_box()
+    across = (bars["x"] + 0.5 * bars["width"] / 8, bars["y"] + 0.25 * bars["height"])
+    page.drag(across, (bars["width"] * 7 / 8, 0), steps=30)  # over all eight: half of their height, which is 60 degrees
+    page.committed(revision + 3)
+    twisted = page.session.scene.stack[layer.name].deformer.rates
+    np.testing.assert_allclose(twisted[:, 2], np.pi / 6, rtol=0.15)
+    np.testing.assert_array_equal(np.delete(twisted, 2, axis=1), np.delete(rates, 2, axis=1))
+    same_points(page)
+    page.picture("segments")

@@ -33,6 +33,8 @@ class RateRow {
   private readonly bars: SVGRectElement[];
   private readonly said = h("output");
   private drag: LayerDrag | null = null;
+  /** The bar that the pointer was at before, and how high. */
+  private last: readonly [number, number] | null = null;
 
   constructor(
     private readonly studio: Studio,
@@ -69,20 +71,25 @@ class RateRow {
     this.set(svg, event);
   }
 
-  /** The bar under the pointer ends there; near the middle it is nothing. */
+  /** The bar under the pointer ends there, and those that it has passed on a line; near the middle they are nothing. */
   private set(svg: SVGSVGElement, event: PointerEvent): void {
     const { left, top, width, height } = svg.getBoundingClientRect();
-    const segment = Math.min(Math.max(Math.floor(((event.clientX - left) / width) * this.count), 0), this.count - 1);
-    const part = Math.min(Math.max(1 - (2 * (event.clientY - top)) / height, -1), 1);
-    this.rates[4 * segment + this.column] = Math.abs(part) < 0.08 ? 0 : part * ROWS[this.column]![1];
-    this.show(segment);
+    const to = Math.min(Math.max(Math.floor(((event.clientX - left) / width) * this.count), 0), this.count - 1);
+    const high = Math.min(Math.max(1 - (2 * (event.clientY - top)) / height, -1), 1);
+    const [from, before] = this.last ?? [to, high];
+    for (let i = 0; i <= Math.abs(to - from); i++) {
+      const part = high + ((before - high) * i) / Math.max(Math.abs(to - from), 1);
+      this.rates[4 * (to + Math.sign(from - to) * i) + this.column] = Math.abs(part) < 0.08 ? 0 : part * ROWS[this.column]![1];
+    }
+    this.last = [to, high];
+    this.show(to);
     const rates = Array.from({ length: this.count }, (_, i) => [...this.rates.subarray(4 * i, 4 * i + 4)]);
     this.drag?.move({ fields: { rates } }, {});
   }
 
   private release(): void {
     void this.drag?.commit();
-    this.drag = null;
+    this.drag = this.last = null;
   }
 
   private show(segment: number | null = null): void {
