@@ -83,6 +83,22 @@ def test_what_is_picked_is_what_the_library_finds(edited):
         assert grown.tolist() == regions.grow(BAR, REGION, rings).tolist()
 
 
+def test_large_shapes_are_measured_in_the_background(edited, monkeypatch):
+    from pliant.studio.commands import surface
+
+    session, page = edited(Scene(BAR))
+    page.ask(session, "surface.measure")
+    assert "along" not in session.beside  # a small one is measured when it is asked for
+    monkeypatch.setattr(surface, "_MANY", 100)
+    page.ask(session, "surface.measure")
+    session.jobs._pool.submit(lambda: None).result()
+    _, along = session.beside["along"]
+    assert along.ready
+    away = page.ask(session, "surface.distances", index=np.array([7], np.uint32)).arrays["distances"]
+    assert session.beside["along"][1] is along
+    np.testing.assert_allclose(away, regions.geodesic_distance(BAR.points, BAR.triangles, np.array([7])), rtol=1e-6)
+
+
 def test_picking_is_of_the_shape_as_it_is_seen(edited):
     shift = pl.Affine.translation([1.0, 0, 0])
     session, page = edited(Scene(BAR, Stack((Layer("Shift", shift),))))

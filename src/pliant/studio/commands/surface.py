@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pliant.errors import InvalidParameter
-from pliant.numerics.meshes.geodesics import geodesic_distance
+from pliant.numerics.meshes.geodesics import GeodesicDistances
 from pliant.studio.dragging import begin, cancel, commit, ongoing
 from pliant.studio.modes.method_switch import edit_of, exchange, method_of
 from pliant.studio.modes.skeletons import show_skeleton, skeleton_frame
@@ -20,6 +20,7 @@ from pliant.studio.session import Session
 from pliant.surface import regions
 from pliant.surface.screen import SeenMesh
 
+_MANY = 40_000  # triangles: with fewer, distances take no time
 _MOST_CONTOURS, _MOST_EIGENVECTORS = 300, 60
 
 
@@ -43,8 +44,17 @@ def distances(session: Session, request: Request) -> Frame:
     start = request.indices("index", len(stage.scene.mesh.points))
     if not len(start):
         raise InvalidParameter("there is no vertex to measure from: click on the surface")
-    found = geodesic_distance(stage.binding.result, stage.drawn.triangles, start)
+    found = _along(session)(start)
     return Frame({}, {"distances": np.where(np.isfinite(found), found, 1e30).astype(np.float32)})
+
+
+@command("surface.measure")
+def measure(session: Session, request: Request) -> None:
+    """Somebody will ask for distances: on a large shape, what they need is computed in the background."""
+    if len(session.shown.drawn.triangles) > _MANY:
+        along = _along(session)
+        if not along.ready:
+            session.jobs.run("Distances", lambda _: along.prepare(), lambda _: None)
 
 
 @command("surface.grow", reads=True)
@@ -195,6 +205,18 @@ def _seen(session: Session, request: Request) -> SeenMesh:
         known = key, SeenMesh(stage.binding.result, stage.drawn.triangles, matrix)
         session.beside["seen"] = known
     found: SeenMesh = known[1]
+    return found
+
+
+def _along(session: Session) -> GeodesicDistances:
+    """Distances along the shape as it is, kept until it is another one."""
+    stage = session.shown
+    key = (stage.id, session.revision)
+    known = session.beside.get("along")
+    if known is None or known[0] != key:
+        known = key, GeodesicDistances(stage.binding.result, stage.drawn.triangles)
+        session.beside["along"] = known
+    found: GeodesicDistances = known[1]
     return found
 
 

@@ -23,6 +23,7 @@ export const SURFACE = {
   methodARAP: ["ARAP", "ARAP"],
   methodSkeleton: ["Skeleton", "骨架"],
   methodComing: ["Being prepared: until it is ready, the surface follows by the method before.", "准备中：就绪之前沿用先前的方法。"],
+  job_Distances: ["Measuring along the surface", "正在测量沿曲面的距离"],
   job_Skeleton: ["Skeleton", "骨架"],
   job_Transfer: ["Transfer", "迁移"],
   job_Cage: ["Cage", "控制笼"],

@@ -230,6 +230,7 @@ export class SurfaceMode implements Mode {
     this.handle.followTools();
     this.turnWith(mover ? MOUSE.PAN : MOUSE.ROTATE);
     this.studio.viewport.canvas.style.cursor = mover ? "" : "crosshair";
+    if (this.tools.picker === "geodesic" && this.studio.scene?.mesh?.faces) void this.studio.ask("surface.measure");
     this.look();
   }
 
