@@ -9,32 +9,24 @@ from typing import Self
 import numpy as np
 from numpy.typing import ArrayLike
 
-from pliant.cages.enclosing import Enclosing, spread, untangled
-from pliant.cages.linking import Linking
+from pliant.cages.constructing import Construction, constructed
+from pliant.cages.linking import linked
 from pliant.cages.parting import Parts, parted
-from pliant.cages.relaxing import relaxed
 from pliant.cages.sections import Cut
-from pliant.errors import InvalidParameter, InvalidTarget, NotConverged
-from pliant.mesh import Points, PolygonMesh
-from pliant.numerics.meshes.triangle_crossings import self_crossings
-
-_FIRST = 4  # vertices between the rings of a region that is linked along the surface, at first
-_MORE = 6  # that many each time where it fails, and there
-_ATTEMPTS = 8
-_PATIENCE = 2  # attempts for which rings and links may cut one another before the margin is made smaller
-_SHARES = (1.0, 0.5, 0.25)  # of the margin, tried in turn: limbs may be near to one another
+from pliant.errors import InvalidParameter, InvalidTarget
+from pliant.mesh import PolygonMesh
 
 
 @dataclass(frozen=True, eq=False)
 class CageBuilder:
     """A cage under construction; each step gives a new one.
 
-    Planes cut the shape across its limbs. Around each cut lies a ring, a polygon of ``sides`` corners. Between two cuts
-    the rings are linked by quadrangles, where three cuts or more meet by triangles, and a limb's end gets a cap. Which
-    cuts meet follows from the mesh: it is the skeleton that the cuts imply. Then vertices are pushed out until the
-    cage encloses the mesh, and made smoother and tighter while it does. A region where that fails, since the shape
-    branches, bends or widens in it, is linked along the surface instead: further vertices are spread over it, and the
-    surface says which belong together.
+    Planes cut the shape across its limbs. Around each cut lies a ring, a polygon of ``sides`` corners, in its plane.
+    The surface at some distance around the shape is split along the planes and made coarser: rings until they have
+    their corners, what is between them until it has as few vertices as the shape lets it. Only steps are taken after
+    which it still encloses the mesh and does not cut itself, so that there is a cage for any planes, and the mesh may
+    be open, in pieces, or cut itself. A plane has no ring where another part of the shape is too near, or where it
+    crosses another plane on the shape: :meth:`construct` tells which.
 
     Parameters
     ----------
@@ -117,63 +109,38 @@ class CageBuilder:
         InvalidParameter, InvalidTarget
             No cut, one that misses the mesh or separates nothing, two that cross; pieces without a cut.
         """
-        return self._linking(self._parted()).linked({})[0]
+        return linked(self._parted(), self.cuts, self.sides, self.margin * self.mesh.diagonal)
 
-    def build(self, rounds: int = 3, *, progress: Callable[[float], object] = lambda _: None) -> PolygonMesh:
-        """The cage.
-
-        Regions whose faces do not enclose what is in them, or cut others, are linked along the surface, with more
-        vertices each time.
+    def build(
+        self, rounds: int = 3, *, vertices: int | None = None, progress: Callable[[float], object] = lambda _: None
+    ) -> PolygonMesh:
+        """The cage; :meth:`construct` tells also which planes have no ring in it.
 
         Parameters
         ----------
         rounds
             How often it is made smoother and tighter.
+        vertices
+            How many vertices it may have, if its rings need no more; None = as many as the shape needs.
         progress
-            Told how far it is, from 0 to 1, before each attempt; what it raises ends the work.
+            Told how far it is, from 0 to 1; what it raises ends the work.
 
         Raises
         ------
-        NotConverged
-            No number of vertices that was tried gives a cage that encloses the mesh and does not cut itself: with the
-            cuts around the regions where it fails, and a place.
+        InvalidParameter
+            No cut, or none that meets the mesh.
         """
-        parts, clearance = self._parted(), 0.1 * self.margin * self.mesh.diagonal
-        regions = parts.of_vertices(len(self.mesh.points))
-        for tried, share in enumerate(_SHARES):
-            linking, places, near = self._linking(parts, share), dict[int, int](), dict[int, Points]()
-            apart = False  # whether rings and links have been apart from one another
-            for attempt in range(_ATTEMPTS):
-                progress((tried + attempt / _ATTEMPTS) / len(_SHARES))
-                linked, owners = linking.linked(places, near)
-                rough = untangled(linked, self.mesh)
-                crossed = self_crossings(rough.points, rough.triangles)
-                if len(crossed):
-                    triangles = np.unique(crossed)
-                    wrong = rough.points[rough.triangles[triangles]].mean(axis=1)
-                    at = owners[rough.triangle_faces[triangles]]
-                    if attempt >= _PATIENCE and not apart and share != _SHARES[-1]:
-                        break  # limbs are too near to one another for this margin
-                else:
-                    apart = True
-                    points, wrong, at = Enclosing(rough, owners, self.mesh, regions, share * clearance).solve()
-                if not len(wrong):
-                    return relaxed(rough.with_points(points), self.mesh, rounds, clearance)
-                for region in np.unique(at).tolist():
-                    if region in places:
-                        near[region] = np.concatenate([near.get(region, wrong[:0]), spread(wrong[at == region], _MORE)])
-                    places[region] = places.get(region, 0) + _FIRST
-        failing, (x, y, z) = linking.named(np.unique(at).tolist()), np.median(wrong, axis=0)
-        raise NotConverged(
-            f"the {len(self.cuts)} cuts give no cage that encloses the mesh without cutting itself: it fails at "
-            f"{failing}, most of all near ({x:.4g}, {y:.4g}, {z:.4g}). Add cuts there or where the shape bends or "
-            "widens, keep cuts of neighbouring limbs apart, or take a smaller margin"
-        )
+        return self.construct(rounds, vertices=vertices, progress=progress).cage
+
+    def construct(
+        self, rounds: int = 3, *, vertices: int | None = None, progress: Callable[[float], object] = lambda _: None
+    ) -> Construction:
+        """The cage, and which planes have no ring in it, and why; with the parameters of :meth:`build`."""
+        if not self.cuts:
+            raise InvalidParameter("there is no cut yet: add one by cut(origin, normal)")
+        return constructed(self.mesh, self.cuts, self.sides, self.margin, rounds, vertices, progress)
 
     def _parted(self) -> Parts:
         if not self.cuts:
             raise InvalidParameter("there is no cut yet: add one by cut(origin, normal)")
         return parted(self.mesh, self.cuts)
-
-    def _linking(self, parts: Parts, share: float = 1.0) -> Linking:
-        return Linking(parts, self.cuts, self.sides, share * self.margin * self.mesh.diagonal)

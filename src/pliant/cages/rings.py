@@ -13,16 +13,23 @@ Ring = list[int]
 """Indices of a ring's vertices, counter-clockwise seen from outside the region that it bounds."""
 
 
+def reach_of(points: Points, cut: Cut, sides: int = 12) -> Floats:
+    """(sides,) how far points go from a cut's origin, in evenly spaced directions across its normal."""
+    first, second = axes_across(cut.normal)
+    angles = 2 * np.pi * np.arange(sides) / sides
+    directions = np.outer(np.cos(angles), first) + np.outer(np.sin(angles), second)
+    return np.asarray(((points - cut.origin) @ directions.T).max(axis=0))
+
+
 def polygon_around(points: Points, cut: Cut, sides: int, margin: float) -> Points:
     """(sides, 3) the convex polygon in a cut's plane whose sides touch the projected points, at a distance.
 
     Its sides look in evenly spaced directions; it is counter-clockwise about the cut's normal.
     """
     first, second = axes_across(cut.normal)
-    flat = np.stack([(points - cut.origin) @ first, (points - cut.origin) @ second], axis=1)
     angles = 2 * np.pi * np.arange(sides) / sides
     directions = np.stack([np.cos(angles), np.sin(angles)], axis=1)
-    reach = (flat @ directions.T).max(axis=0) + margin
+    reach = reach_of(points, cut, sides) + margin
     following = np.roll(directions, -1, axis=0)
     corners = np.linalg.solve(
         np.stack([directions, following], axis=1), np.stack([reach, np.roll(reach, -1)], 1)[..., None]

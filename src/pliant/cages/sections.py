@@ -72,7 +72,11 @@ def triangle_edges(mesh: PolygonMesh) -> Indices:
 
 def edges_of(triangles: NDArray[np.integer]) -> Indices:
     """(e, 2) the edges of triangles, each once, sorted."""
-    return np.asarray(np.unique(np.sort(half_edges_of(triangles), axis=1), axis=0))
+    ends = np.sort(half_edges_of(triangles), axis=1)
+    count = int(triangles.max(initial=0)) + 1
+    codes = np.sort(ends[:, 0] * count + ends[:, 1])
+    first = np.append(True, codes[1:] != codes[:-1])[: len(codes)]
+    return np.stack(np.divmod(codes[first], count), axis=1)
 
 
 def half_edges_of(triangles: NDArray[np.integer]) -> Indices:

@@ -21,6 +21,9 @@ _OPTIONS = {
 inlined: Callable[[Callable[..., Any]], Any] = _jit(forceinline=True, no_cpython_wrapper=True, **_OPTIONS)
 """A piece of kernels; Python cannot call it."""
 
+called: Callable[[Callable[..., Any]], Any] = _jit(no_cpython_wrapper=True, **_OPTIONS)
+"""The same, which need not be copied to where it is called: long pieces, so that compiling takes less."""
+
 
 def kernel(function: Callable[..., Any]) -> Callable[..., Any]:
     """Compile a function that Python drives over chunks, at its first call; the result is cached on disk.

@@ -34,7 +34,7 @@ def _pierces(p, q, corners):
 
 
 @inlined
-def _edge_through(corners, ids, other, other_ids):
+def edge_through(corners, ids, other, other_ids):
     """Whether an edge of one triangle, none of whose ends the other has, passes through the other."""
     for k in range(3):
         m = (k + 1) % 3
@@ -68,7 +68,7 @@ def cutting_pairs(first, one, second, two, low, high, width, itself, found):
             if high[j, 0] < x0 or low[j, 1] > y1 or high[j, 1] < y0 or low[j, 2] > z1 or high[j, 2] < z0:
                 continue
             ids = two[j] if itself else nothing
-            if _edge_through(corners, one[i], second[j], ids) or _edge_through(
+            if edge_through(corners, one[i], second[j], ids) or edge_through(
                 second[j], two[j], corners, one[i] if itself else nothing
             ):
                 if count < len(found):

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from pliant.cages.checking import check_cage
+from pliant.cages.constructing import Construction
 from pliant.errors import InvalidParameter, NotConverged
 from pliant.field.volumes import volume
 from pliant.mesh import Points, PolygonMesh
@@ -44,13 +45,15 @@ def build(session: Session, request: Request) -> None:
     kind = _kind(request)
     shape = scene.mesh.with_points(session.shown.binding.result)
 
-    def work(job: Job) -> PolygonMesh:
+    def work(job: Job) -> Construction:
         return plan.build(shape, lambda part: _tell(session, job, part))
 
-    def done(cage: PolygonMesh) -> None:
+    def done(found: Construction) -> None:
         _still(session, scene)
-        stack, layer = with_layer(scene.stack, "Cage", Cage(cage, coordinates=kind))
+        stack, layer = with_layer(scene.stack, "Cage", Cage(found.cage, coordinates=kind))
         session.commit(scene.replace(stack=stack), "add", layer)
+        left_out = [f"{each.number}: {each.reason}" for each in found.left_out]
+        session.broadcast(Frame({"event": "cage-planes", "layer": layer, "left_out": left_out}))
 
     session.jobs.run("Cage", work, done)
 

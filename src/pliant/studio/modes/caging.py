@@ -13,6 +13,7 @@ from pliant.cages.boxes import cage_from_box
 from pliant.cages.builder import CageBuilder
 from pliant.cages.building import build_cage
 from pliant.cages.checking import CageReport
+from pliant.cages.constructing import Construction
 from pliant.cages.rings import polygon_around
 from pliant.cages.sections import Cut, cut_loop, triangle_edges
 from pliant.errors import InvalidParameter, PliantError
@@ -32,7 +33,7 @@ class Plan:
     method
         ``"offset"`` or ``"alpha_wrap"``: automatically; ``"box"``; ``"cuts"``: by planes.
     vertices
-        The budget of the automatic ways; of a box, about as many.
+        The budget; of a box, about as many.
     margin
         Room around the shape, in its diagonals.
     symmetry
@@ -50,15 +51,16 @@ class Plan:
     cuts: Floats
     sides: int
 
-    def build(self, mesh: PolygonMesh, progress: Callable[[float], None]) -> PolygonMesh:
-        """The cage around a mesh."""
+    def build(self, mesh: PolygonMesh, progress: Callable[[float], None]) -> Construction:
+        """The cage around a mesh, and the planes that have no ring in it."""
         if self.method == "cuts":
-            return self.builder(mesh).build(progress=progress)
+            return self.builder(mesh).construct(vertices=self.vertices, progress=progress)
         if self.method == "box":
-            return cage_from_box(mesh, _cells(mesh, self.vertices), self.margin)
-        return build_cage(
+            return Construction(cage_from_box(mesh, _cells(mesh, self.vertices), self.margin), ())
+        found = build_cage(
             mesh, self.vertices, self.margin, method=self.method, symmetry=self.symmetry, progress=progress
         )
+        return Construction(found, ())
 
     def builder(self, mesh: PolygonMesh) -> CageBuilder:
         """The planes so far, as a cage under construction."""

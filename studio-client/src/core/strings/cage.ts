@@ -27,6 +27,7 @@ export const CAGE = {
   ],
   drawingPlanes: ["Drags draw; Alt turns the view", "拖动即画线；Alt 拖动旋转视图"],
   plane: ["Plane", "切面"],
+  planeLeftOut: ["No ring on plane", "以下切面没有环："],
   planeMissed: ["That line misses the shape: draw it across a limb.", "该线没有经过形状：请画过肢体。"],
   ringSides: ["Corners of a ring", "环的角数"],
   cageChecking: ["Looking at the cage …", "正在检查笼网格…"],

@@ -35,7 +35,8 @@ export class BuildPanel {
         now.method,
         (method) => this.change({ method, drawing: method === "cuts" }),
       ),
-      ...(now.method === "cuts" ? this.planes() : this.budget()),
+      ...(now.method === "cuts" ? this.planes() : []),
+      ...this.budget(),
       row(
         t("margin"),
         slider(100 * now.margin, {

@@ -35,6 +35,7 @@ export interface CageActions {
 export class CagePanel {
   readonly element = h("div", { class: "cage-panel" });
   private report: Report | null = null;
+  private leftOut: string[] = [];
   private rows: Row[] = [];
   private other: string | null = null;
   private kind = "mean_value";
@@ -54,6 +55,12 @@ export class CagePanel {
 
   setReport(report: Report | null): void {
     this.report = report;
+    this.fill();
+  }
+
+  /** The planes that have no ring in this cage, and why. */
+  setLeftOut(planes: string[]): void {
+    this.leftOut = planes;
     this.fill();
   }
 
@@ -107,6 +114,7 @@ export class CagePanel {
       { class: "cage-report" },
       ...lines.map(([good, key]) => h("li", { class: good ? "good" : "bad" }, icon(good ? "check" : "warning", 15) as unknown as Node, h("span", null, t(key)))),
       h("li", { class: "muted" }, h("span", null, `${report.vertices} ${t("vertices")}, ${report.faces} ${t("faces")}${ratio}`)),
+      ...this.leftOut.map((plane) => h("li", { class: "left-out" }, icon("warning", 15) as unknown as Node, h("span", null, `${t("planeLeftOut")} ${plane}`))),
       ...report.failures.map((failure) => h("li", { class: "bad" }, h("span", null, failure))),
     );
   }

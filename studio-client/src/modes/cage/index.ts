@@ -48,6 +48,7 @@ class CageMode extends PointsMode {
   private faces: CageFaces | null = null;
   private loaded = "";
   private rows: Row[] = [];
+  private readonly leftOut = new Map<string, string[]>();
   private known: string[] | null = null;
   private ends: (() => void)[] = [];
 
@@ -57,6 +58,10 @@ class CageMode extends PointsMode {
     this.beside = new Beside(studio);
     studio.session.on("cage-report", ({ head }) => {
       if (head["layer"] === this.points?.layer) this.facts.setReport(head["report"] as Report);
+    });
+    studio.session.on("cage-planes", ({ head }) => {
+      this.leftOut.set(head["layer"] as string, head["left_out"] as string[]);
+      this.facts.setLeftOut(this.leftOut.get(this.points?.layer ?? "") ?? []);
     });
     studio.session.on("cage-comparison", ({ head }) => {
       this.rows = head["rows"] as Row[];
@@ -192,6 +197,7 @@ class CageMode extends PointsMode {
       return;
     }
     this.facts.setReport(null);
+    this.facts.setLeftOut(this.leftOut.get(points.layer) ?? []);
     const answer = await this.studio.ask("cage.get", { layer: points.layer });
     if (!answer || points.layer !== this.points?.layer) return;
     this.call(answer.head["coordinates"] as string);
