@@ -8,7 +8,7 @@ import type { Studio } from "../studio";
 import { button, iconButton } from "./controls";
 
 export interface TourStep {
-  /** What the step points at, as a CSS selector; the canvas as a whole where there is none. */
+  /** What the step points at, as a CSS selector; the first that there is of several. The canvas where there is none. */
   at?: string;
   title: StringKey;
   text: StringKey;
@@ -133,23 +133,20 @@ export class Tours {
     const { card, ring, running } = this;
     if (!card || !running) return;
     const page = this.studio.root.getBoundingClientRect();
-    const stage = this.studio.viewport.element.getBoundingClientRect();
+    const stage = (this.studio.viewport.element.closest(".stage") ?? this.studio.viewport.element).getBoundingClientRect();
     const target = this.target(running.steps[running.step]!.at);
     const { offsetWidth: width, offsetHeight: height } = card;
-    ring.hidden = target === null;
+    encircle(ring, target ?? inside(stage), page);
     let [x, y] = [stage.left + GAP, stage.bottom - height - 3 * GAP];
-    if (target) {
-      [x, y] = beside(target, page, width, height);
-      Object.assign(ring.style, pixels({ left: target.left - page.left - 4, top: target.top - page.top - 4 }));
-      Object.assign(ring.style, pixels({ width: target.width + 8, height: target.height + 8 }));
-    }
+    if (target) [x, y] = beside(target, page, width, height);
     const left = Math.min(Math.max(x, page.left + 8), page.right - width - 8) - page.left;
     const top = Math.min(Math.max(y, page.top + 8), page.bottom - height - 8) - page.top;
     Object.assign(card.style, pixels({ left, top }));
   }
 
   private target(selector: string | undefined): DOMRect | null {
-    const element = selector === undefined ? null : this.studio.root.querySelector(selector);
+    const found = (selector ?? "").split(",").map((each) => each.trim() && this.studio.root.querySelector(each));
+    const element = found.find((each) => each instanceof Element && each.getClientRects().length) || null;
     element?.scrollIntoView({ block: "nearest" });
     const box = element?.getBoundingClientRect();
     return box && box.width > 0 && box.height > 0 ? box : null;
@@ -165,6 +162,15 @@ function beside(target: DOMRect, page: DOMRect, width: number, height: number): 
   }
   return target.bottom + GAP + height < page.bottom ? [center, target.bottom + GAP] : [center, target.top - GAP - height];
 }
+
+/** Draw the ring around a place, clear of it, but on the page. */
+function encircle(ring: HTMLElement, { left, top, right, bottom }: DOMRect, page: DOMRect): void {
+  const [x, y] = [Math.max(left - 4, page.left + 1), Math.max(top - 4, page.top + 1)];
+  const [width, height] = [Math.min(right + 4, page.right - 1) - x, Math.min(bottom + 4, page.bottom - 1) - y];
+  Object.assign(ring.style, pixels({ left: x - page.left, top: y - page.top, width, height }));
+}
+
+const inside = ({ left, top, width, height }: DOMRect): DOMRect => new DOMRect(left + 6, top + 6, width - 12, height - 12);
 
 const dots = (now: number, count: number): HTMLElement[] =>
   Array.from({ length: count }, (_, i) => h("i", { class: i === now ? "now" : "" }));

@@ -38,7 +38,7 @@ export const FACE = {
   ],
   faceTourSliders: ["Its caricature", "漫画化"],
   faceTourSlidersText: [
-    "The first slider goes away from the mean face, or towards it; the others say how much each feature takes part.",
-    "第一个滑块远离或接近平均脸，其余滑块决定各部位的参与程度。",
+    "Where there is a face, sliders stand here: the first goes away from the mean face, or towards it; the others say how much each feature takes part.",
+    "有了人脸后，这里会出现滑块：第一个远离或接近平均脸，其余滑块决定各部位的参与程度。",
   ],
 } as const satisfies Strings;

@@ -75,7 +75,7 @@ export const MODEL = {
   ],
   modelTourFit: ["Fit to a mesh", "拟合网格"],
   modelTourFitText: [
-    "Load a target, of any triangles, and let the model find its way to it. Landmarks help; each round is shown.",
-    "载入任意三角网格作为目标，让模型逐轮逼近。标志点会提供帮助。",
+    "Where there is a model, a target of any triangles is loaded here, and the model finds its way to it. Landmarks help; each round is shown.",
+    "有了模型后，可在此载入任意三角网格作为目标，让模型逐轮逼近。标志点会提供帮助。",
   ],
 } as const satisfies Strings;

@@ -4,6 +4,6 @@ import type { TourStep } from "../../panels/tour";
 
 export const cageTour = (): TourStep[] => [
   { at: "[data-section=mode-cage]", title: "cageTourBuild", text: "cageTourBuildText" },
-  { title: "cageTourPlanes", text: "cageTourPlanesText" },
-  { title: "cageTourDrag", text: "cageTourDragText" },
+  { at: "[data-section=mode-cage] .segments", title: "cageTourPlanes", text: "cageTourPlanesText" },
+  { at: ".stage-top .toolbar", title: "cageTourDrag", text: "cageTourDragText" },
 ];

@@ -4,5 +4,5 @@ import type { TourStep } from "../../panels/tour";
 
 export const faceTour = (): TourStep[] => [
   { at: ".section[data-section=mode-face]", title: "faceTourPhoto", text: "faceTourPhotoText" },
-  { at: ".section[data-section=mode-face]", title: "faceTourSliders", text: "faceTourSlidersText" },
+  { at: ".caricature, .section[data-section=mode-face]", title: "faceTourSliders", text: "faceTourSlidersText" },
 ];
