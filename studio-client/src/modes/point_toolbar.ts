@@ -9,7 +9,7 @@ import type { Axis, PointTools } from "./points_tools";
 
 export function pointToolbar(tools: PointTools): HTMLElement {
   const bar = h("div", { class: "toolbar", role: "toolbar" });
-  const numbers = h("div", { class: "toolbar toolbar-numbers" });
+  const numbers = h("div", { class: "toolbar-numbers" });
   tools.state.watch(() => {
     fill(bar, tools);
     const shown = fields(tools);
