@@ -177,3 +177,26 @@ def test_markers_come_back_and_poses_that_play_are_given_up(launched, view):
     page.settled()
     assert page.session.revision == revision
     assert page.page.locator(".toast").count() == 0
+
+
+def test_who_looks_for_a_sphere_finds_it_and_sees_all_of_it(launched, view):
+    page = view(launched(Scene(BAR)))
+    page.drawn()
+    page.page.get_by_role("button", name="Add a deformer").click()
+    search = page.page.get_by_placeholder("Search deformers")
+    search.fill("no such thing")
+    page.page.get_by_text("No deformer is called so.").wait_for()
+    search.fill("sphere")
+    page.page.keyboard.press("Enter")
+    page.page.get_by_role("dialog", name="New round lattice").wait_for()
+    page.page.get_by_role("radio", name="Sphere").click()
+    page.page.get_by_text("127 control points").wait_for()
+    revision = page.session.revision
+    page.page.get_by_role("button", name="Create").click()
+    page.committed(revision)
+    page.handles()
+    box = page.page.locator(".viewport canvas").first.bounding_box()
+    for index in range(0, 127, 9):
+        x, y = page.control(index)
+        assert box["x"] < x < box["x"] + box["width"]
+        assert box["y"] < y < box["y"] + box["height"]

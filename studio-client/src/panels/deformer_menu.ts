@@ -10,6 +10,7 @@ import { newExtended } from "./extended_dialog";
 import { newLattice } from "./lattice_dialog";
 
 const GROUPS: Record<string, StringKey> = { lattice: "groupLattices", shape: "groupShapes", field: "groupFields" };
+const EXTENDED = "extended-ffd";
 const LATTICES = ["bspline-ffd", "bezier-ffd"];
 
 export function chooseDeformer(studio: Studio, anchor: HTMLElement): void {
@@ -20,7 +21,9 @@ export function chooseDeformer(studio: Studio, anchor: HTMLElement): void {
   const fill = (): void => {
     const word = search.value.trim().toLowerCase();
     const kinds = studio.session.catalogue.value?.kinds ?? [];
-    if (word) replace(list, ...found(kinds, word).map((kind) => item(studio, kind, close)));
+    const matching = word ? found(kinds, word) : [];
+    if (matching.length) replace(list, ...matching.map((kind) => item(studio, kind, close)));
+    else if (word) replace(list, h("p", { class: "muted menu-title" }, t("noDeformer")));
     else replace(list, ...Object.entries(GROUPS).flatMap(([group, title]) => inGroup(studio, kinds, group, t(title), close)));
   };
   search.addEventListener("input", fill);
@@ -40,10 +43,13 @@ export function chooseDeformer(studio: Studio, anchor: HTMLElement): void {
 function found(kinds: Kind[], word: string): Kind[] {
   const rank = ({ name, title, summary }: Kind): number => {
     const at = Math.max(title.toLowerCase().indexOf(word), term(KINDS, name, title).toLowerCase().indexOf(word));
-    return at === 0 ? 0 : at > 0 ? 1 : summary.toLowerCase().includes(word) ? 2 : 3;
+    return at === 0 ? 0 : at > 0 ? 1 : `${summary} ${shapes(name)}`.toLowerCase().includes(word) ? 2 : 3;
   };
   return kinds.filter((kind) => rank(kind) < 3).sort((a, b) => rank(a) - rank(b));
 }
+
+/** What a deformer's dialog offers to choose from. */
+const shapes = (kind: string): string => (kind === EXTENDED ? [t("cylinder"), t("prism"), t("sphere")].join(", ") : "");
 
 function inGroup(studio: Studio, kinds: Kind[], group: string, title: string, close: () => void): HTMLElement[] {
   const own = kinds.filter((kind) => kind.group === group);
@@ -54,7 +60,7 @@ function inGroup(studio: Studio, kinds: Kind[], group: string, title: string, cl
 function item(studio: Studio, kind: Kind, close: () => void): HTMLElement {
   const choose = (): void => {
     close();
-    if (kind.name === "extended-ffd") newExtended(studio);
+    if (kind.name === EXTENDED) newExtended(studio);
     else if (LATTICES.includes(kind.name)) newLattice(studio, kind.name === "bspline-ffd" ? "bspline" : "bezier");
     else void studio.ask("layers.add", { kind: kind.name }).then((answer) => {
       if (answer) studio.activeLayer.set(answer.head["layer"] as string);
@@ -64,7 +70,7 @@ function item(studio: Studio, kind: Kind, close: () => void): HTMLElement {
     "button",
     { class: "menu-item", type: "button", role: "menuitem", onclick: choose, "data-kind": kind.name },
     h("span", { class: "menu-item-title" }, term(KINDS, kind.name, kind.title)),
-    h("span", { class: "muted" }, kind.summary),
+    h("span", { class: "muted" }, [shapes(kind.name), kind.summary].filter((each) => each).join(". ")),
   );
 }
 

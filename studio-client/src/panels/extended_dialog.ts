@@ -4,6 +4,7 @@ import { h, replace } from "../core/dom";
 import { t } from "../core/strings";
 import type { Studio } from "../studio";
 import { Latest } from "../transport/latest";
+import { reveal } from "../view/reveal";
 import { row, segments, select, slider } from "./controls";
 import { openDialog } from "./dialog";
 
@@ -16,9 +17,11 @@ export function newExtended(studio: Studio): void {
   const choice = { kind: "cylinder" as Kind, axis: studio.settings.now.up as string, shape: [8, 4, 4], margin: 0.05, part: "" };
   const counts = h("div", { class: "form" });
   const told = h("p", { class: "muted" });
+  let shown = new Float32Array();
   const latest = new Latest<null>(async () => {
     const answer = await studio.ask("extended.preview", choice);
-    studio.field.setPreview((answer?.arrays["points"] as Float64Array | undefined) ? new Float32Array(answer!.arrays["points"]!) : null, (answer?.arrays["links"] as Uint32Array) ?? new Uint32Array());
+    shown = new Float32Array(answer?.arrays["points"] ?? []);
+    studio.field.setPreview(shown.length ? shown : null, (answer?.arrays["links"] as Uint32Array) ?? new Uint32Array());
     told.textContent = answer ? `${answer.head["count"] as number} ${t("controlPointsCount")}` : "";
     studio.viewport.request();
   });
@@ -76,8 +79,10 @@ export function newExtended(studio: Studio): void {
     label: t("create"),
     run: async () => {
       const answer = await studio.ask("extended.add", choice);
-      if (answer) studio.activeLayer.set(answer.head["layer"] as string);
-      return answer !== null;
+      if (!answer) return false;
+      studio.activeLayer.set(answer.head["layer"] as string);
+      reveal(studio, shown);
+      return true;
     },
   });
   element.classList.add("beside");

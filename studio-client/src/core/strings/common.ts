@@ -63,6 +63,7 @@ export const COMMON = {
   envelope: ["Strength", "强度"],
   reorder: ["Drag to reorder; or Alt-Up and Alt-Down", "拖动排序，或按 Alt-↑ / Alt-↓"],
   searchDeformers: ["Search deformers", "搜索变形器"],
+  noDeformer: ["No deformer is called so.", "没有这样的变形器。"],
   groupLattices: ["Lattices and sites", "晶格与控制点"],
   groupShapes: ["Bends and other shapes", "弯曲等"],
   groupFields: ["Fields and maps", "场与映射"],

@@ -7,6 +7,7 @@ import { Latest } from "../../transport/latest";
 import type { Numbers } from "../../transport/frame";
 import { GhostLines } from "../../view/ghost_lines";
 import { Handles } from "../../view/handles";
+import { reveal } from "../../view/reveal";
 import { Tags } from "../../view/tags";
 import { LayerDrag } from "../layer_drag";
 import { AXIAL_KEYS } from "../key_lists";
@@ -15,9 +16,6 @@ import { addAxial, axialToolbar } from "./adding";
 import { HandleSet, type Role } from "./handle_set";
 import { axialPanel } from "./panel";
 import { axialTour } from "./tour";
-
-const EDGE = 12; // pixels of the canvas that handles keep clear of
-const BAR = 58; // and above, where the tools are
 
 const SIZES: Record<Role, number> = { number: 1.3, bound: 0.95, origin: 1.1, direction: 1 };
 
@@ -179,21 +177,8 @@ class AxialMode implements Mode {
     const layer = await addAxial(this.studio, kind);
     this.latest.push(null);
     await this.latest.idle();
-    if (this.set && this.set.layer === layer) this.reveal(this.set);
+    if (this.set && this.set.layer === layer) reveal(this.studio, this.set.positions);
     this.adding--;
-  }
-
-  /** Step back where handles lie outside of the canvas, or behind the bar above it. */
-  private reveal(set: HandleSet): void {
-    const { viewport } = this.studio;
-    const { width, height } = viewport.size;
-    const hidden = set.facts.some((_, index) => {
-      const { x, y } = viewport.project(set.at(index));
-      return x < EDGE || y < BAR || x > width - EDGE || y > height - EDGE;
-    });
-    const box = this.selectionBox()!;
-    const room = 0.07 * box.getSize(new Vector3()).length();
-    if (hidden) this.studio.frame(box.expandByScalar(room));
   }
 
   private follow(arrays: Record<string, Numbers>): void {
