@@ -131,6 +131,8 @@ def test_a_guide_comes_once_can_be_skipped_and_starts_anew_from_the_help_sheet(l
     page.page.keyboard.press("?")
     page.page.get_by_role("group", name="Guides").get_by_role("button", name="Look").click()
     page.until("document.querySelector('.tour h3')?.textContent === 'Turn it'")
+    page.page.keyboard.press("Escape")
+    page.until("document.querySelector('.tour') === null")
     page.page.reload()
     page.until("window.pliantStudio !== undefined && document.querySelector('.link.open') !== null")
     page.drawn()
