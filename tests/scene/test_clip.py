@@ -211,7 +211,7 @@ def test_a_clip_on_another_stack_keeps_the_keys_that_still_have_a_layer():
     ("call", "cause"),
     [
         (lambda: clip(duration=0.0), "the clip is empty: its duration is 0.0"),
-        (lambda: clip(fps=np.nan), "its fps is nan"),
+        (lambda: clip(fps=np.nan), "fps is nan"),
         (lambda: clip(intensity=np.inf), "intensity is inf"),
         (lambda: clip(ending="stop"), "'once', 'loop' or 'ping-pong', not 'stop'"),
         (lambda: clip(motion=pl.MeshSequence(np.zeros((1, 5, 3)), [0.0])), "one of 5 points; the mesh has 160"),

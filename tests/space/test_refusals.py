@@ -44,3 +44,37 @@ POINTS = np.random.default_rng(0).normal(size=(20, 3))
 def test_it_is_refused_by_name(make, error, words):
     with pytest.raises(error, match=words):
         make()
+
+
+MESH = shapes.sphere(1.0, segments=16).mesh
+STACK = pl.Stack([pl.Layer("a", pl.Affine())])
+
+
+@pytest.mark.parametrize(
+    ("make", "error", "words"),
+    [
+        (lambda: pl.Clip(MESH, STACK, duration="long"), InvalidParameter, "duration is 'long'"),
+        (lambda: pl.Clip(MESH, STACK, fps=None), InvalidParameter, "fps is None"),
+        (lambda: pl.Clip(MESH, STACK, intensity="full"), InvalidParameter, "intensity is 'full'"),
+        (lambda: pl.Clip(MESH, STACK, ending="loop").sample(np.nan), InvalidParameter, "the time is nan"),
+        (lambda: pl.Clip(MESH, STACK).key("a", 0.0, {"envelope": 1.0}, easing=3), InvalidParameter, "3 is no easing"),
+        (lambda: pl.ARAP([0, 1, 2], [0], iterations="many"), InvalidDeformer, "iterations is 'many'"),
+        (lambda: pl.ARAP([0, 1, 2], [0], tolerance=None), InvalidDeformer, "tolerance is None"),
+        (lambda: pl.LaplacianEdit([0, 1, 2], [0], pull="hard"), InvalidDeformer, "pull is 'hard'"),
+        (lambda: pl.smooth(MESH, 2.5), InvalidParameter, "iterations is 2.5; a whole number"),
+        (lambda: pl.smooth(MESH, 3, strength="much"), InvalidParameter, "strength is 'much'"),
+        (lambda: pl.smooth(MESH, -1), InvalidParameter, "iterations is -1; it must be 0 or more"),
+        (lambda: pl.ThinPlateSpline(POINTS, regularization="some"), InvalidDeformer, "regularization is 'some'"),
+        (lambda: pl.DirichletFFD("sites"), InvalidDeformer, "sites is 'sites'"),
+        (
+            lambda: pl.ShapeModel.from_kernel(MESH, pl.GaussianKernel(1.0), rank=2.5),
+            InvalidParameter,
+            "the rank is 2.5",
+        ),
+        (lambda: pl.contour_skeleton(MESH, "x"), InvalidParameter, "contours is 'x'; a whole number"),
+        (lambda: pl.Landmarks(["a"], [[0.0, 1.0]]), InvalidParameter, r"\(k, 3\) is needed"),
+    ],
+)
+def test_numbers_of_scenes_surfaces_and_models_are_looked_at_first(make, error, words):
+    with pytest.raises(error, match=words):
+        make()

@@ -60,7 +60,7 @@ def test_delta_mush_gives_a_rigid_pose_back_exactly():
 
 def test_wrong_smoothing_is_refused():
     for options, cause in (
-        ({"method": "hard"}, "no method"), ({"strength": -1}, "strength -1"), ({"iterations": -1}, "iterations"),
+        ({"method": "hard"}, "no method"), ({"strength": -1}, "strength is -1"), ({"iterations": -1}, "iterations"),
         ({"method": "taubin", "strength": 3}, "not stable"), ({"method": "delta mush"}, "needs rest"),
         ({"weights": "mean value"}, "knows no weights"), ({"rest": MESH}, "only that"),
         ({"method": "delta mush", "rest": sheet()}, "another mesh"),

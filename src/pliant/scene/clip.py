@@ -13,6 +13,7 @@ import numpy as np
 from pliant.errors import InvalidParameter
 from pliant.io.report import LossReport
 from pliant.mesh import Points, PolygonMesh
+from pliant.numerics.given import as_number
 from pliant.scene.easing import Easing
 from pliant.scene.keyed import keyed_layer
 from pliant.scene.sequence import MeshSequence
@@ -76,8 +77,7 @@ class Clip:
     def __post_init__(self) -> None:
         self._timing  # noqa: B018 -- what no clip lasts is refused now, not later
         for name in ("intensity", "amplify"):
-            if not np.isfinite(float(getattr(self, name))):
-                raise InvalidParameter(f"the clip's {name} is {getattr(self, name)}; it must be finite")
+            as_number(f"the clip's {name}", getattr(self, name), InvalidParameter)
         if self.motion is not None and self.motion.count != len(self.mesh.points):
             raise InvalidParameter(
                 f"the motion is one of {self.motion.count:,} points; the mesh has {len(self.mesh.points):,}"

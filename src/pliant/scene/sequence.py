@@ -9,6 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pliant.errors import InvalidParameter
 from pliant.mesh import Points
+from pliant.numerics.given import as_numbers
 from pliant.numerics.ragged import frozen
 
 
@@ -33,7 +34,7 @@ class MeshSequence:
     times: ArrayLike
 
     def __post_init__(self) -> None:
-        points, times = np.asarray(self.points), np.asarray(self.times, np.float64)
+        points, times = np.asarray(self.points), as_numbers("times", self.times, InvalidParameter)
         if points.ndim != 3 or points.shape[2] != 3 or not len(points):
             raise InvalidParameter(f"a sequence of shape {points.shape}: (k, n, 3) is needed, one frame or more")
         if times.shape != points.shape[:1] or not np.isfinite(times).all() or (np.diff(times) <= 0).any():

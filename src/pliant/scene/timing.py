@@ -5,9 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-import numpy as np
-
 from pliant.errors import InvalidParameter
+from pliant.numerics.given import as_number
 
 Ending = Literal["once", "loop", "ping-pong"]
 
@@ -35,7 +34,7 @@ class Timing:
 
     def __post_init__(self) -> None:
         for name in ("duration", "fps"):
-            if not 0 < float(getattr(self, name)) < np.inf:
+            if not as_number(f"the clip's {name}", getattr(self, name), InvalidParameter) > 0:
                 raise InvalidParameter(f"the clip is empty: its {name} is {getattr(self, name)}; it must be positive")
         if self.ending not in ("once", "loop", "ping-pong"):
             raise InvalidParameter(f"a clip ends by 'once', 'loop' or 'ping-pong', not {self.ending!r}")
@@ -53,8 +52,15 @@ class Timing:
         return tuple(min(i / self.fps, self.period) for i in range(last))
 
     def moment(self, time: float) -> float:
-        """Any time, in the keys' own count: between zero and the duration."""
+        """Any time, in the keys' own count: between zero and the duration.
+
+        Raises
+        ------
+        InvalidParameter
+            It is no finite number.
+        """
+        given = as_number("the time", time, InvalidParameter)
         if self.ending == "once":
-            return min(max(float(time), 0.0), self.duration)
-        moment = float(time) % self.period
+            return min(max(given, 0.0), self.duration)
+        moment = given % self.period
         return self.period - moment if moment > self.duration else moment

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from pliant.errors import InvalidParameter
-from pliant.scene.easing import Easing
+from pliant.scene.easing import Easing, checked_easing
 from pliant.scene.keyed import checked_value
 from pliant.scene.stack import Stack
 from pliant.scene.track import Key, Track
@@ -42,9 +42,9 @@ def with_keys(
         No such layer or field, a value of another shape, an unknown easing.
     """
     found = {(track.layer, track.field): track for track in tracks}
-    given = easing if isinstance(easing, str) else tuple(easing)
+    given = checked_easing(easing)
     for field, value in values.items():
-        key = Key(time, checked_value(stack[layer], field, value), given)  # type: ignore[arg-type]
+        key = Key(time, checked_value(stack[layer], field, value), given)
         track = found.get((layer, field))
         found[layer, field] = Track(layer, field, (key,)) if track is None else track.with_key(key)
     return tuple(found.values())

@@ -16,6 +16,7 @@ from typing import Literal
 import numpy as np
 
 from pliant.errors import InvalidParameter, PliantWarning
+from pliant.numerics.given import as_count, as_number
 from pliant.shape.basis import Basis, FullBasis, ScalarBasis, everywhere
 from pliant.shape.expansion import expansion, expansion_slopes
 from pliant.shape.kernels import Floats, Kernel
@@ -131,9 +132,10 @@ def checked_rank(size: int, rank: int | None, tolerance: float, absolute: float)
     InvalidParameter
         Nothing said, a rank below one, or a tolerance outside [0, 1).
     """
-    if rank is not None and rank < 1:
+    if rank is not None and as_count("the rank", rank, InvalidParameter) < 1:
         raise InvalidParameter(f"the rank is {rank}; a model needs at least one field")
-    if not 0 <= tolerance < 1 or not 0 <= absolute < np.inf:
+    tolerance, absolute = (as_number("the tolerance", each, InvalidParameter) for each in (tolerance, absolute))
+    if not 0 <= tolerance < 1 or absolute < 0:
         raise InvalidParameter(f"the tolerance is {tolerance}, a part of the variance: from 0 to below 1")
     if rank is None and not tolerance and not absolute:
         raise InvalidParameter("say how many fields there shall be: rank=, or tolerance=")

@@ -8,6 +8,7 @@ import numpy as np
 
 from pliant.errors import InvalidMesh, InvalidParameter
 from pliant.mesh import PolygonMesh
+from pliant.numerics.given import as_count
 from pliant.shape.basis import FullBasis
 from pliant.shape.model import ShapeModel
 from pliant.shape.procrustes import generalized_procrustes
@@ -45,7 +46,7 @@ def learn_model(
     """
     if len(meshes) < 2:
         raise InvalidParameter(f"a model is learnt from two examples or more, not from {len(meshes)}")
-    if rank is not None and rank < 1:
+    if rank is not None and as_count("the rank", rank, InvalidParameter) < 1:
         raise InvalidParameter(f"the rank is {rank}; a model needs at least one field")
     count = len(meshes[0].points)
     for number, each in enumerate(meshes):

@@ -9,7 +9,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pliant.errors import InvalidDeformer, InvalidTarget
 from pliant.mesh import PolygonMesh, as_points
-from pliant.numerics.given import as_numbers
+from pliant.numerics.given import as_number, as_numbers
 
 Floats = NDArray[np.float64]
 
@@ -22,13 +22,7 @@ def one_number(name: str, value: Any) -> float:
     InvalidDeformer
         Anything else.
     """
-    try:
-        number = float(value)
-    except (TypeError, ValueError, OverflowError) as error:
-        raise InvalidDeformer(f"{name} is {value!r}; a number is needed") from error
-    if not np.isfinite(number):
-        raise InvalidDeformer(f"{name} is {number}; a finite number is needed")
-    return number
+    return as_number(name, value, InvalidDeformer)
 
 
 def three_numbers(name: str, values: ArrayLike) -> Floats:

@@ -13,6 +13,7 @@ from pliant.deformer import Binding, Controls, Target, checked_controls, checked
 from pliant.errors import InvalidDeformer, OutsideDomain
 from pliant.mesh import Points, PolygonMesh, as_points
 from pliant.numerics.compute.chunks import for_chunks
+from pliant.numerics.given import as_numbers
 from pliant.numerics.lattices.patch_surface import PatchSurface, bernstein_sum, bernstein_transpose
 from pliant.numerics.ragged import frozen
 from pliant.space.bezier_ffd import TOLERANCE, Outside
@@ -57,7 +58,10 @@ class BezierPatchFFD(ControlLattice):
     outside: Outside = "identity"
 
     def __post_init__(self) -> None:
-        values = {name: np.asarray(getattr(self, name), np.float64) for name in ("displacements", "origin", "edges")}
+        values = {
+            name: as_numbers(f"the patch's {name}", getattr(self, name), InvalidDeformer)
+            for name in ("displacements", "origin", "edges")
+        }
         moves = values["displacements"]
         if moves.ndim != 4 or moves.shape[2:] != (1, 3) or min(moves.shape[:2]) < 2:
             raise InvalidDeformer(f"displacements have shape {moves.shape}; (l, m, 1, 3) is needed, l and m from 2 on")

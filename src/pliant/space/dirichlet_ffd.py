@@ -13,6 +13,7 @@ from scipy.sparse import csr_array, eye_array, vstack
 from pliant.deformer import Controls, SpaceDeformer, Target, checked_controls
 from pliant.errors import InvalidDeformer
 from pliant.mesh import as_points
+from pliant.numerics.given import as_numbers
 from pliant.numerics.neighbors.ghost_box import GhostBox
 from pliant.numerics.ragged import frozen
 from pliant.space.sparse import SparseBinding
@@ -66,7 +67,11 @@ class DirichletFFD(SpaceDeformer):
             raise InvalidDeformer(f"coordinates are {self.coordinates!r}; they must be 'sibson' or 'laplace'")
         if not LEAST_MARGIN <= self.margin <= 1e3:
             raise InvalidDeformer(f"margin is {self.margin}; it must be {LEAST_MARGIN} or more, and at most 1000")
-        moves = np.zeros_like(sites) if self.displacements is None else np.asarray(self.displacements, np.float64)
+        moves = (
+            np.zeros_like(sites)
+            if self.displacements is None
+            else as_numbers("displacements", self.displacements, InvalidDeformer)
+        )
         if moves.shape != sites.shape or not np.isfinite(moves).all():
             raise InvalidDeformer(f"displacements must be finite and of shape {sites.shape}; theirs is {moves.shape}")
         object.__setattr__(self, "sites", sites)
@@ -115,7 +120,7 @@ class DirichletFFD(SpaceDeformer):
 def _checked_sites(sites: ArrayLike) -> Controls:
     from scipy.spatial import cKDTree
 
-    array = np.asarray(sites, np.float64)
+    array = as_numbers("sites", sites, InvalidDeformer)
     if array.ndim != 2 or array.shape[1] != 3 or len(array) < 2:
         raise InvalidDeformer(f"sites have shape {array.shape}; (k, 3) is needed, with two sites or more")
     if not np.isfinite(array).all():

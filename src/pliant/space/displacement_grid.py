@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from pliant.deformer import Controls, Target
 from pliant.errors import InvalidDeformer
 from pliant.mesh import Points, as_points
+from pliant.numerics.given import as_numbers
 from pliant.numerics.lattices.cells import BSPLINE, CellGrid, CellPoints
 from pliant.numerics.lattices.grid_points import GridPoints
 from pliant.numerics.lattices.polynomial_cells import PolynomialCells
@@ -75,9 +76,10 @@ class DisplacementGrid(ControlLattice):
 
     def __post_init__(self) -> None:
         values = {
-            "displacements": np.asarray(self.displacements, np.float64),
-            "origin": np.asarray(self.origin, np.float64),
-            "spacing": np.asarray(self.spacing, np.float64),
+            **{
+                name: as_numbers(f"the grid's {name}", getattr(self, name), InvalidDeformer)
+                for name in ("displacements", "origin", "spacing")
+            },
             "axes": checked_axes(self.axes),
         }
         shape = values["displacements"].shape

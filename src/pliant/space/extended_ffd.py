@@ -16,6 +16,7 @@ from scipy.sparse import csr_array
 from pliant.deformer import Controls, SpaceDeformer, Target, checked_controls
 from pliant.errors import InvalidDeformer, OutsideDomain
 from pliant.mesh import Points, PolygonMesh, as_points
+from pliant.numerics.given import as_numbers
 from pliant.numerics.lattices.patch_block import PatchBlock
 from pliant.numerics.ragged import frozen
 from pliant.space import round_lattices
@@ -72,10 +73,14 @@ class ExtendedFFD(SpaceDeformer):
     frames: tuple[RoundFrame | None, ...] | None = None
 
     def __post_init__(self) -> None:
-        points = np.asarray(self.points, np.float64)
+        points = as_numbers("points", self.points, InvalidDeformer)
         if points.ndim != 2 or points.shape[1] != 3:
             raise InvalidDeformer(f"control points have shape {points.shape}; (m, 3) is needed")
-        moves = np.zeros_like(points) if self.displacements is None else np.asarray(self.displacements, np.float64)
+        moves = (
+            np.zeros_like(points)
+            if self.displacements is None
+            else as_numbers("displacements", self.displacements, InvalidDeformer)
+        )
         if moves.shape != points.shape:
             raise InvalidDeformer(f"displacements have shape {moves.shape}; {points.shape} is needed")
         if not (np.isfinite(points).all() and np.isfinite(moves).all()):

@@ -26,7 +26,7 @@ from pliant.deformer import (
 )
 from pliant.errors import InvalidDeformer
 from pliant.mesh import Points, as_points
-from pliant.numerics.given import as_numbers
+from pliant.numerics.given import as_number, as_numbers
 from pliant.numerics.maps.radial import RadialBasis
 from pliant.numerics.ragged import frozen
 from pliant.space.landmark_system import LandmarkSystem
@@ -65,7 +65,7 @@ class LandmarkWarp(SpaceDeformer):
         targets = landmarks if self.targets is None else _placed("targets", self.targets)
         if targets.shape != landmarks.shape:
             raise InvalidDeformer(f"{len(landmarks)} landmarks have {len(targets)} targets: each needs one")
-        if not 0 <= self.regularization < np.inf:
+        if as_number("the regularization", self.regularization, InvalidDeformer) < 0:
             raise InvalidDeformer(f"the regularization is {self.regularization}; it must be zero or positive")
         _refuse_duplicates(landmarks)
         object.__setattr__(self, "landmarks", frozen(landmarks, np.float64))

@@ -12,6 +12,7 @@ from pliant.deformer import Controls, Target
 from pliant.errors import InvalidDeformer, NonFiniteResult, NotDifferentiable
 from pliant.iterative import IterativeBinding, Solution
 from pliant.mesh import Points
+from pliant.numerics.given import as_number
 from pliant.numerics.meshes.laplacians import WEIGHTS
 from pliant.numerics.rigid.rotations import nearest_rotations
 from pliant.surface.cells import Cells
@@ -59,8 +60,8 @@ class ARAP(SurfaceDeformer):
         if self.weights not in _KNOWN:
             raise InvalidDeformer(f"ARAP knows no weights {self.weights!r}; it knows: {', '.join(_KNOWN)}")
         for name, least in (("smoothness", 0.0), ("tolerance", 0.0), ("iterations", 1)):
-            value = getattr(self, name)
-            if not least <= value < np.inf:
+            value = as_number(name, getattr(self, name), InvalidDeformer)
+            if value < least:
                 raise InvalidDeformer(f"{name} is {value}; it must be finite, and {least} or more")
 
     def bind(self, target: Target) -> ARAPBinding:

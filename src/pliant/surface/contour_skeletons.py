@@ -11,6 +11,7 @@ from scipy.sparse import csr_array
 
 from pliant.errors import InvalidParameter
 from pliant.mesh import Points, PolygonMesh
+from pliant.numerics.given import as_count
 from pliant.numerics.meshes.adjacency import unique_edges
 from pliant.numerics.meshes.eigenpairs import lowest_eigenpairs
 from pliant.numerics.meshes.graphs import components, edge_graph, nearest_source
@@ -106,8 +107,8 @@ def contour_skeleton(
         Less than one contour or two eigenvectors, or a scalar that is not one finite number a vertex.
     """
     mesh = mesh_of(mesh, "a contour skeleton")
-    if contours < 1 or eigenvectors < 2:
-        raise InvalidParameter(f"contours is {contours}, eigenvectors {eigenvectors}; at least 1 and 2 are needed")
+    as_count("contours", contours, InvalidParameter, 1)
+    as_count("eigenvectors", eigenvectors, InvalidParameter, 2)
     given = None if scalar is None else _scalar_of(mesh, scalar)
     groups, field = np.full(len(mesh.points), -1, np.int64), np.zeros(len(mesh.points))
     points, links, count = [], [], 0

@@ -13,6 +13,7 @@ from scipy.sparse.linalg import LinearOperator
 from pliant.deformer import Controls, LinearBinding, Target, checked_controls
 from pliant.errors import InvalidDeformer
 from pliant.mesh import Points, PolygonMesh
+from pliant.numerics.given import as_numbers
 from pliant.numerics.meshes.graphs import grown
 from pliant.numerics.meshes.laplacians import WEIGHTS, laplacian, masses, normalized
 from pliant.numerics.sparse.sparse_cholesky import Cholesky
@@ -61,7 +62,7 @@ class LaplacianEdit(SurfaceDeformer):
         allowed = [name for name in WEIGHTS if self.method != "biharmonic" or name != "mean value"]
         if self.weights not in allowed:
             raise InvalidDeformer(f"{self.method!r} knows no weights {self.weights!r}; it knows: {', '.join(allowed)}")
-        pull = np.asarray(self.pull, np.float64)
+        pull = as_numbers("pull", self.pull, InvalidDeformer)
         if pull.shape not in ((), self._shape[:1]) or not (np.isfinite(pull) & (pull > 0)).all():
             raise InvalidDeformer(f"pull is a positive number, or {self._shape[0]} of them; given: {self.pull}")
 

@@ -12,6 +12,7 @@ from numpy.typing import ArrayLike, NDArray
 from pliant.deformer import Controls, Deformer, LinearBinding, Target, checked_controls, checked_out, require_finite
 from pliant.errors import InvalidDeformer, InvalidTarget
 from pliant.mesh import Points, as_points
+from pliant.numerics.given import as_numbers
 from pliant.numerics.ragged import frozen
 
 Floats = NDArray[np.float64]
@@ -41,7 +42,7 @@ class ShapeKeys(Deformer):
     weights: ArrayLike | None = None
 
     def __post_init__(self) -> None:
-        moves = np.asarray(self.displacements, np.float64)
+        moves = as_numbers("displacements", self.displacements, InvalidDeformer)
         if moves.ndim != 3 or moves.shape[2] != 3 or not np.isfinite(moves).all():
             raise InvalidDeformer(f"displacements of shape {moves.shape}: (k, n, 3) finite numbers are needed")
         names = tuple(self.names) or tuple(f"key {i}" for i in range(len(moves)))

@@ -11,6 +11,7 @@ from scipy.sparse import csc_array, csr_array, diags_array
 from pliant.deformer import require_finite
 from pliant.errors import InvalidParameter
 from pliant.mesh import Points, PolygonMesh
+from pliant.numerics.given import as_count, as_number
 from pliant.numerics.meshes.laplacians import WEIGHTS, laplacian, masses, normalized
 from pliant.numerics.ragged import Ragged
 from pliant.numerics.sparse.sparse_cholesky import Cholesky
@@ -145,10 +146,9 @@ def _check(
 ) -> None:
     if method not in METHODS:
         raise InvalidParameter(f"no method is called {method!r}; there are: {', '.join(METHODS)}")
-    if iterations < 0 or not 0 < strength < np.inf:
-        raise InvalidParameter(
-            f"iterations is {iterations}, strength {strength}; 0 or more, and a positive number are needed"
-        )
+    as_count("iterations", iterations, InvalidParameter)
+    if as_number("strength", strength, InvalidParameter) <= 0:
+        raise InvalidParameter(f"strength is {strength}; a positive number is needed")
     steps = method in ("explicit", "taubin")
     if steps and strength > 1:
         raise InvalidParameter(f"strength is {strength}; above 1 {method!r} is not stable: use 'implicit'")
