@@ -76,7 +76,21 @@ def test_planes_make_a_cage_as_the_library_s_builder_does():
         np.testing.assert_allclose(shown.arrays["points"].reshape(-1, 3), builder.rough().points, atol=1e-6)
         session.submit(lambda: page.ask(session, "cage.build", values, cuts=cuts.reshape(-1))).result()
         waited(session, lambda: session.scene.stack.names)
-        np.testing.assert_allclose(session.scene.stack["Cage"].deformer.rest, builder.build(vertices=150).points, atol=1e-12)
+        expected = builder.build(vertices=150).points
+        np.testing.assert_allclose(session.scene.stack["Cage"].deformer.rest, expected, atol=1e-12)
+
+
+def test_planes_without_a_ring_are_told():
+    cuts = np.array([[0.0, 0.0, 0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0, 0.0, 0.3], [9.0, 0.0, 0.0, 1.0, 0.0, 0.0]])
+    with session_on(pl.Scene(BAR), "bar") as (session, page):
+        values = {"method": "cuts", "margin": 0.05}
+        session.submit(lambda: page.ask(session, "cage.build", values, cuts=cuts.reshape(-1))).result()
+        told_planes = waited(session, lambda: page.events("cage-planes"))[0].head
+        assert told_planes["layer"] == "Cage"
+        assert told_planes["left_out"] == ["1: it crosses another plane on the shape", "2: it misses the shape"]
+        cage = session.scene.stack["Cage"].deformer
+        assert check_cage(cage.mesh, BAR).ok
+        assert np.count_nonzero(np.abs(cage.rest[:, 0]) < 1e-9) == 6  # the ring is in its plane
 
 
 def test_planes_that_cannot_be_linked_show_their_rings_and_say_why():

@@ -27,6 +27,7 @@ _COARSER = (1.0, 1.5, 2.5)  # cells, should the first ones not do
 _ROOMS = (0.3, 0.1, 0.01)  # of the shell's distance: what stays between mesh and cage
 _LIMIT = 2e-5  # of the fourth power of the diagonal: the error up to which a cage is made coarser
 _MOST = 4  # times as many vertices as rings, ends and branches ask for
+_REACH = 0.5  # of the same: the unit in which vertices go outwards
 _LEAST = 24
 _ROUNDS = 2  # of smoothing in each round that is asked for
 
@@ -103,12 +104,12 @@ def _coarse(
     most = vertices or _MOST * least
     for room in _ROOMS:
         if thinning.vertices > least:
-            thinning.collapse(min(least, most), room * offset, offset, _LIMIT * mesh.diagonal**4)
+            thinning.collapse(min(least, most), room * offset, _REACH * offset, _LIMIT * mesh.diagonal**4)
         progress(0.6)
-        thinning.collapse(most, room * offset, offset)
+        thinning.collapse(most, room * offset, _REACH * offset)
         thinning.flip(room * offset)
         thinning.smooth(0.5, room * offset)
-        if thinning.vertices <= most:
+        if thinning.vertices <= most and thinning.rings_done:
             break
     for _ in range(_ROUNDS * rounds):
         thinning.flip(_ROOMS[0] * offset)

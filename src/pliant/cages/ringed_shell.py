@@ -19,6 +19,7 @@ Indices = NDArray[np.int64]
 _NEAR = 0.15  # cells: vertices of a shell that are nearer to a plane than this are moved away from it
 TOUCHES = "another part of the shape is too near to its limb there"
 _JOINED = 1.0  # offsets: a section of the shell that goes farther than expected by this holds another limb too
+_WIDER, _BESIDE = 1.5, 3.0  # how much farther it may go where there is no other way: of its own reach, and in offsets
 
 
 @dataclass(frozen=True)
@@ -109,7 +110,8 @@ def _with_ring(
         return None, loop.points, "it misses the shape"
     reach = reach_of(loop.points, cut)
     farther = float((reach_of(around.points, cut) - reach).max()) - shell.offset
-    if farther > (max(1.5 * reach.max(), _JOINED * shell.offset) if loosely else _JOINED * shell.offset):
+    most = max(_WIDER * reach.max(), _BESIDE * shell.offset) if loosely else _JOINED * shell.offset
+    if farther > most:
         return None, loop.points, TOUCHES
     if not loops_apart(found, edges, around):
         return None, loop.points, "it crosses another plane on the shape"

@@ -59,6 +59,12 @@ class Thinning:
         """How many there are."""
         return int((self._valence > 0).sum())
 
+    @property
+    def rings_done(self) -> bool:
+        """Whether no ring has two vertices for a corner."""
+        corners = self._sector[(self._ring >= 0) & (self._valence > 0)]
+        return len(np.unique(corners)) == len(corners)
+
     def collapse(self, wanted: int, room: float, reach: float, limit: float = np.inf) -> None:
         """Collapse edges until there are no more vertices than wanted, or none can.
 

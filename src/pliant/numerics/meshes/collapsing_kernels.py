@@ -57,7 +57,7 @@ def _places_beside_a_ring(v, points, normal, outwards, reach, places):
     """A vertex of a ring, and farther out in its plane."""
     along = normal[0] * outwards[0] + normal[1] * outwards[1] + normal[2] * outwards[2]
     for c in range(CHOICES):
-        far = 0.0 if c == 0 else reach * 2.0 ** (c - 3)
+        far = 0.0 if c == 0 else reach * 2.0 ** (c - 5)
         for i in range(3):
             places[c, i] = points[v, i] + far * (outwards[i] - along * normal[i])
 
