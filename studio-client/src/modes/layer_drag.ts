@@ -4,6 +4,7 @@ import type { Frame, Numbers } from "../transport/frame";
 import { Latest } from "../transport/latest";
 import { CommandError } from "../transport/session";
 import type { Studio } from "../studio";
+import { boundsOf } from "../view/mesh_view";
 
 interface Job {
   values: Record<string, unknown>;
@@ -105,11 +106,7 @@ export class LayerDrag {
     const { arrays, head } = answer;
     if (arrays["index"]) this.index = arrays["index"];
     if (arrays["positions"]) {
-      this.studio.mesh.move(
-        head["all"] ? null : this.index,
-        widened(arrays["positions"], head["low"] as number[], head["high"] as number[]),
-        arrays["normals"]!,
-      );
+      this.studio.mesh.move(head["all"] ? null : this.index, arrays["positions"], arrays["normals"]!, boundsOf(head));
       this.studio.pointsMoved.set(this.studio.pointsMoved.value + 1);
     }
     this.onAnswer(arrays, head);

@@ -11,6 +11,7 @@ import {
   Mesh,
   Points,
   PointsMaterial,
+  Sphere,
   Vector3,
   type Material,
 } from "three";
@@ -32,6 +33,22 @@ export interface DrawnMesh {
   parts: { material: number; start: number; count: number }[];
   materials: MaterialFacts[];
 }
+
+/** Where positions lie: each is so many steps from the low corner. */
+export interface Bounds {
+  low: readonly number[];
+  high: readonly number[];
+  steps: number;
+}
+
+const PLAIN: Bounds = { low: [0, 0, 0], high: [1, 1, 1], steps: 1 };
+
+/** The box of positions that were sent as 16 bits a coordinate. */
+export const boundsOf = (head: Record<string, unknown>): Bounds => ({
+  low: head["low"] as number[],
+  high: head["high"] as number[],
+  steps: 65535,
+});
 
 export class MeshView {
   readonly object = new Group();
@@ -169,18 +186,20 @@ export class MeshView {
     this.surface.material = this.painting(before);
   }
 
-  /** Move some points, or all: positions and normals of `index`, in place. */
-  move(index: Numbers | null, positions: ArrayLike<number>, normals: ArrayLike<number>): void {
+  /** Move some points, or all: positions and normals of `index`, in place; as parts of a box where they are 16 bits. */
+  move(index: Numbers | null, positions: ArrayLike<number>, normals: ArrayLike<number>, box: Bounds = PLAIN): void {
     const to = this.positions;
     const bend = this.normal.array as Int8Array;
     const count = index ? index.length : this.count;
+    const [x, y, z] = box.low as [number, number, number];
+    const [dx, dy, dz] = box.low.map((low, k) => (box.high[k]! - low) / box.steps) as [number, number, number];
     let low = this.count;
     let high = -1;
     for (let i = 0; i < count; i++) {
       const at = index ? index[i]! : i;
-      to[3 * at] = positions[3 * i]!;
-      to[3 * at + 1] = positions[3 * i + 1]!;
-      to[3 * at + 2] = positions[3 * i + 2]!;
+      to[3 * at] = x + dx * positions[3 * i]!;
+      to[3 * at + 1] = y + dy * positions[3 * i + 1]!;
+      to[3 * at + 2] = z + dz * positions[3 * i + 2]!;
       bend[4 * at] = normals[3 * i]!;
       bend[4 * at + 1] = normals[3 * i + 1]!;
       bend[4 * at + 2] = normals[3 * i + 2]!;
@@ -266,11 +285,13 @@ export class MeshView {
   private follow(): void {
     const to = this.positions;
     const bend = this.normal.array as Int8Array;
-    this.twins.forEach((from, i) => {
-      const at = this.count + i;
-      to.copyWithin(3 * at, 3 * from, 3 * from + 3);
-      bend.copyWithin(4 * at, 4 * from, 4 * from + 3);
-    });
+    for (let i = 0, at = this.count; i < this.twins.length; i++, at++) {
+      const from = this.twins[i]!;
+      for (let k = 0; k < 3; k++) {
+        to[3 * at + k] = to[3 * from + k]!;
+        bend[4 * at + k] = bend[4 * from + k]!;
+      }
+    }
   }
 
   private upload(low: number, high: number): void {
@@ -280,7 +301,8 @@ export class MeshView {
       if (this.twins.length) attribute.addUpdateRange(this.count * size, this.twins.length * size);
       attribute.needsUpdate = true;
     }
-    this.geometry.boundingSphere = null;
+    const middle = this.geometry.boundingSphere?.center; // what is drawn is sorted by it; rays look at every triangle
+    this.geometry.boundingSphere = new Sphere(middle, Infinity);
     this.geometry.boundingBox = null;
   }
 }

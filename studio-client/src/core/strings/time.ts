@@ -29,6 +29,7 @@ export const TIME = {
   timeCurves: ["Curves", "曲线"],
   timePin: ["Keep the timeline open in other modes", "在其他模式中保持时间线打开"],
   timeHeight: ["Height of the timeline", "时间线高度"],
+  timeLeftOut: ["frames left out to keep time: this machine draws more slowly than the clock runs", "帧被略过以保持时序：本机绘制速度低于播放速度"],
   timeFilm: ["Export", "导出"],
   timePlace: ["Place the tool: each place is a key at the playhead", "移动工具：每次放置在播放头处成为关键帧"],
   timeThrough: ["Move the object through it", "让物体穿过它"],

@@ -7,7 +7,7 @@ import { Latest } from "../../transport/latest";
 import type { Frame } from "../../transport/frame";
 import type { ClipState } from "../../transport/protocol";
 import type { Studio } from "../../studio";
-import { widened } from "../layer_drag";
+import { boundsOf } from "../../view/mesh_view";
 import { ReadAhead } from "./read_ahead";
 
 const ROOM = 256 * 2 ** 20; // bytes of frames that are kept
@@ -18,6 +18,8 @@ export class Player {
   readonly playing = new Signal(false);
   /** Frames a second that were shown lately. */
   readonly pace = new Signal(0);
+  /** How many frames of the clock were not shown since playing began. */
+  readonly leftOut = new Signal(0);
   /** How many frames are kept has changed. */
   readonly kept = new Signal(0);
   private readonly frames = new Map<number, Frame>();
@@ -27,6 +29,8 @@ export class Player {
   private near = false; // what is shown is not what the session has told
   private shown: number[] = [];
   private now = -1; // the frame that was shown last while playing
+  private start = 0; // and where it began
+  private drawn = 0; // frames since then
   private readonly ahead = new ReadAhead(
     (count) => this.moment(count / this.fps),
     (frame) => this.has(frame),
@@ -93,8 +97,11 @@ export class Player {
     this.playing.set(true);
     this.studio.viewport.helpers.visible = false;
     this.shown = [];
+    this.drawn = 0;
+    this.leftOut.set(0);
     this.now = -1;
     this.ahead.begin();
+    this.start = this.frameAt(from);
     const began = performance.now() - 1000 * from;
     const tick = (): void => {
       if (!this.playing.value) return;
@@ -127,7 +134,9 @@ export class Player {
       const known = this.frames.get(frame);
       if (known) this.draw(known);
     }
-    this.ahead.follow(Math.floor(elapsed * clip.fps + 1e-6), clip.fps);
+    const count = Math.floor(elapsed * clip.fps + 1e-6);
+    this.ahead.follow(count, clip.fps);
+    this.leftOut.set(Math.max(count - this.start - this.drawn, 0));
     return !ended;
   }
 
@@ -164,7 +173,7 @@ export class Player {
 
   private draw(frame: Frame): void {
     const { head, arrays } = frame;
-    this.studio.mesh.move(null, widened(arrays["positions"]!, head["low"] as number[], head["high"] as number[]), arrays["normals"]!);
+    this.studio.mesh.move(null, arrays["positions"]!, arrays["normals"]!, boundsOf(head));
     this.count();
   }
 
@@ -186,6 +195,7 @@ export class Player {
   private count(): void {
     const now = performance.now();
     this.shown = [...this.shown.filter((when) => now - when < 1000), now];
+    this.drawn++;
     if (this.playing.value) this.pace.set(this.shown.length);
   }
 

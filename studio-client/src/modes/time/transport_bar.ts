@@ -28,7 +28,8 @@ export class TransportBar {
   ) {
     this.play.classList.add("play");
     model.player.playing.onChange((on) => this.showPlaying(on));
-    model.player.pace.onChange((pace) => (this.pace.textContent = pace ? `${pace} fps` : ""));
+    model.player.pace.onChange(() => this.showPace());
+    model.player.leftOut.onChange(() => this.showPace());
   }
 
   /** Build it for the clip as it is, unless it is shown so already. */
@@ -77,6 +78,17 @@ export class TransportBar {
     const { player } = this.model;
     if (this.seconds) setNumber(this.seconds, Number(player.time.value.toFixed(4)));
     if (this.frame) setNumber(this.frame, player.frameAt(player.time.value));
+  }
+
+  /** How many frames a second are seen, of how many; and how many were left out where that is slower than the clock. */
+  private showPace(): void {
+    const { pace, leftOut } = this.model.player;
+    const wanted = this.model.clip?.fps ?? 0;
+    const late = leftOut.value > 0 && pace.value < 0.95 * wanted;
+    const seen = late ? `${pace.value}/${Math.round(wanted)}` : `${pace.value} fps`;
+    replace(this.pace, pace.value ? seen : "", late && pace.value ? h("span", { class: "left-out" }, ` fps −${leftOut.value}`) : null);
+    this.pace.title = late ? `${leftOut.value} ${t("timeLeftOut")}` : "";
+    this.pace.classList.toggle("late", late);
   }
 
   /** A button whose word makes room where there is little. */
