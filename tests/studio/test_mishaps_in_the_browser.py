@@ -9,7 +9,7 @@ from pliant.studio.examples.samples import bar
 
 PROBE = "window.pliantStudio.probes.surface"
 BAR = bar()
-END, LIMB = np.arange(59 * 40, 60 * 40), np.arange(40 * 40, 60 * 40)  # a handle at the end of a bar, and what bends
+END, LIMB = np.arange(59 * 40, 61 * 40), np.arange(40 * 40, 61 * 40)  # a handle at the end of a bar, and what bends
 
 
 def opened(launched, view):
@@ -177,6 +177,22 @@ def test_markers_come_back_and_poses_that_play_are_given_up(launched, view):
     page.settled()
     assert page.session.revision == revision
     assert page.page.locator(".toast").count() == 0
+
+
+def test_the_panel_says_what_is_still_to_be_picked(launched, view):
+    page = view(launched(Scene(BAR, selections={"end": END, "limb": LIMB, "cut": LIMB[:400]})))
+    page.drawn()
+    page.ask("window.pliantStudio.mode('surface')")
+    panel = page.page.locator(".surface-panel")
+    panel.get_by_text("First pick what may bend").wait_for()
+    steps = (
+        ("region", "limb", "Now pick a handle"),
+        ("handle", "end", "makes a new layer"),
+        ("handle", "cut", "tear off"),
+    )
+    for part, name, says in steps:
+        page.page.get_by_role("button", name=f"Take as the {part}: {name}").click()
+        panel.get_by_text(says).wait_for()
 
 
 def test_who_looks_for_a_sphere_finds_it_and_sees_all_of_it(launched, view):

@@ -39,9 +39,9 @@ export const SURFACE = {
     "先选取可以弯曲的部分：在画布上方选“区域”，再框选。",
   ],
   thenHandle: ["Now pick a handle in the region (H): what you will drag.", "再在区域中选取手柄（H）：即要拖动的部分。"],
-  onlyHandle: [
-    "All of the region is handle: it will tear off. Choose Region above, and pick or grow (+) more.",
-    "整个区域都是手柄，拖动会撕裂。请在上方选“区域”，再多选一些或扩展（+）。",
+  handleTears: [
+    "The handle touches what stays: it will tear off there. Pick more of the region around it, or shrink the handle (−).",
+    "手柄与固定部分相邻，拖动会在那里撕裂。请在其周围多选一些区域，或收缩手柄（−）。",
   ],
   needsFaces: ["This mesh has no faces: there is no surface to edit.", "此网格没有面：没有可编辑的曲面。"],
   giveTo: ["Use it for", "用于"],

@@ -54,6 +54,11 @@ export class Chosen {
     return sum.divideScalar(handle.length);
   }
 
+  /** Whether the handle will tear off from what stays. */
+  get torn(): boolean {
+    return this.edge.torn(this.region, this.studio.mesh);
+  }
+
   /** What a limb swings about: the middle of the region's fixed edge; of the handle where there is none. */
   get joint(): Vector3 | null {
     return this.edge.middle(this.region, this.studio.mesh) ?? this.pivot;

@@ -261,7 +261,8 @@ export class SurfaceMode implements Mode {
     this.handle.place();
     if (this.chosen.own === null && !this.handle.active) this.convergence.begin();
     const other = this.chosen.own === null ? (this.chosen.layer?.name ?? null) : null;
-    this.side.show(this.chosen.region, this.chosen.own, other, this.chosen.unseen !== null);
+    const { own, unseen, region } = this.chosen;
+    this.side.show(region, { own, other, unseen: unseen !== null, torn: own === null && this.chosen.torn });
     this.studio.viewport.request();
   }
 

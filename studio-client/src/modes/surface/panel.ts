@@ -24,6 +24,17 @@ export interface SurfaceActions {
   mesh: (shown: boolean) => void;
 }
 
+/** Whose it is that is picked. */
+export interface Whose {
+  /** A layer's; null where it is nobody's yet, and then the layer that could take it. */
+  own: string | null;
+  other: string | null;
+  /** Whether the layer does nothing now. */
+  unseen: boolean;
+  /** Whether the handle will tear off from what stays. */
+  torn: boolean;
+}
+
 export class SurfacePanel {
   readonly element = h("div", { class: "surface-panel" });
   private readonly numbers = { region: h("strong"), handle: h("strong") };
@@ -37,8 +48,8 @@ export class SurfacePanel {
     private readonly actions: SurfaceActions,
   ) {}
 
-  /** What is picked, and whose it is: a layer's (seen or not), or nobody's yet; `other` is the layer that could take it. */
-  show(region: Region, own: string | null, other: string | null, unseen: boolean): void {
+  /** What is picked, and whose it is. */
+  show(region: Region, whose: Whose): void {
     const typed = this.element.contains(document.activeElement) && document.activeElement instanceof HTMLInputElement;
     if (typed && document.activeElement!.getAttribute("aria-label") === t("selectionName")) return;
     if (!this.studio.scene?.mesh?.faces) {
@@ -58,7 +69,7 @@ export class SurfacePanel {
       row(t("method"), segments(METHODS.map(([name, title]) => [name, t(title)] as const), this.tools.now.method, this.actions.method)),
       this.switching.waits && h("p", { class: "muted", role: "status" }, t("methodComing")),
       this.convergence.element,
-      ...this.next(region, own, other, unseen),
+      ...this.next(region, whose),
       h("h4", null, t("namedSelections")),
       this.named(),
       h("h4", null, t("skeleton")),
@@ -78,13 +89,11 @@ export class SurfacePanel {
   }
 
   /** What there is to do next, and whose it will be. */
-  private next(region: Region, own: string | null, other: string | null, unseen: boolean): HTMLElement[] {
+  private next(region: Region, { own, other, unseen, torn }: Whose): HTMLElement[] {
     const says = (text: string): HTMLElement => h("p", { class: "muted" }, text);
     if (own !== null) return [says(unseen ? `«${own}» ${t("layerUnseen")}` : `${t("dragsLayer")} «${own}»`)];
-    const handle = region.count("handle");
-    const missing = !region.count("region") ? "firstRegion" : !handle ? "thenHandle" : null;
-    const alone = handle > 0 && handle === region.count("region");
-    return [says(t(missing ?? (alone ? "onlyHandle" : "dragMakesLayer"))), ...(other === null ? [] : [this.choice(other, missing === null)])];
+    const missing = !region.count("region") ? "firstRegion" : !region.count("handle") ? "thenHandle" : null;
+    return [says(t(missing ?? (torn ? "handleTears" : "dragMakesLayer"))), ...(other === null ? [] : [this.choice(other, missing === null)])];
   }
 
   /** Give what is picked to a layer, or take the layer's own back. */

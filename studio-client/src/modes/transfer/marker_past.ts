@@ -8,6 +8,7 @@ type Markers = TransferState["markers"];
 export class MarkerPast {
   private past: { markers: Markers; revision: number }[] = [];
   private now: TransferState | null = null;
+  private returning: string[] = []; // markers that were asked for: going back is no change
 
   constructor(private readonly studio: Studio) {}
 
@@ -19,7 +20,8 @@ export class MarkerPast {
   follow(state: TransferState): void {
     const { now } = this;
     this.now = state;
-    if (now?.name !== state.name || now.points !== state.points) this.past = [];
+    if (now?.name !== state.name || now.points !== state.points) [this.past, this.returning] = [[], []];
+    else if (this.returning[0] === state.markers.join(";")) this.returning.shift();
     else if (now.markers.join(";") !== state.markers.join(";")) this.past.push({ markers: now.markers, revision: this.revision });
   }
 
@@ -27,12 +29,10 @@ export class MarkerPast {
   undo(): boolean {
     const last = this.past.pop();
     if (!last || last.revision !== this.revision) return false;
-    const before = [...this.past];
     const { markers } = last;
-    const asked = markers.length
-      ? this.studio.ask("transfer.load", { texts: [JSON.stringify({ markers })] })
-      : this.studio.ask("transfer.unmark", { index: -1 });
-    void asked.then(() => (this.past = before)); // going back is no change
+    this.returning.push(markers.join(";"));
+    if (markers.length) void this.studio.ask("transfer.load", { texts: [JSON.stringify({ markers })] });
+    else void this.studio.ask("transfer.unmark", { index: -1 });
     return true;
   }
 }
