@@ -1,36 +1,22 @@
 // Shape models by hand: sliders, landmarks that are dragged, and the most likely shape that follows them.
 
-import { Plane, Vector3, type Box3 } from "three";
-import { t } from "../../core/strings";
+import { Vector3, type Box3 } from "three";
 import type { Studio } from "../../studio";
 import { Handles } from "../../view/handles";
 import { Latest } from "../../transport/latest";
-import type { Numbers } from "../../transport/frame";
 import type { Layer } from "../../transport/protocol";
-import { LayerDrag } from "../layer_drag";
 import { MODEL_KEYS } from "../key_lists";
 import { registerMode, type Mode, type Pointer } from "../mode";
+import { LandmarkGrip } from "./landmark_grip";
 import { ModelPanel } from "./panel";
 import { ModelState } from "./model_state";
 import { RandomFieldPanel } from "./random_field";
 import { CoefficientSliders } from "./sliders";
 import { FitTarget } from "./target";
 import { modelTour } from "./tour";
+import { Uncertainty } from "./uncertainty";
 
 const KIND = "conditioned-model";
-const SLOP = 3; // pixels that a click may wander
-
-/** A landmark under the pointer, or one that is only being made. */
-interface Grab {
-  index: number | null;
-  plane: Plane;
-  offset: Vector3;
-  from: Pointer;
-  to: Pointer;
-  moved: boolean;
-  released: boolean;
-}
-
 class ModelMode implements Mode {
   readonly id = "model";
   readonly icon = "model";
@@ -47,16 +33,14 @@ class ModelMode implements Mode {
     painted: () => this.studio.paint.value !== null,
     target: () => this.target.shown,
     field: () => this.field.facts,
-    ready: () => this.model !== null && !this.grab && !this.drag,
+    ready: () => this.model !== null && !this.grip.holds && !this.grip.drags,
   };
   private model: ModelState | null = null;
   private handles: Handles | null = null;
-  private grab: Grab | null = null;
-  private drag: LayerDrag | null = null;
+  private readonly grip: LandmarkGrip;
   private hovered: number | null = null;
   private readonly selected = new Set<number>();
-  private uncertainty = true;
-  private painted = "";
+  private readonly uncertainty: Uncertainty;
   private mesh: number | null = null;
   private stops: (() => void)[] = [];
   private readonly latest = new Latest<null>(() => this.load());
@@ -66,6 +50,14 @@ class ModelMode implements Mode {
   private readonly side: ModelPanel;
 
   constructor(private readonly studio: Studio) {
+    this.uncertainty = new Uncertainty(studio);
+    this.grip = new LandmarkGrip(studio, {
+      model: () => this.model,
+      load: () => this.load(),
+      choose: (landmark) => this.choose(landmark, false),
+      moved: () => this.handles?.move(),
+      ended: () => this.latest.push(null),
+    });
     this.sliders = new CoefficientSliders(studio);
     this.target = new FitTarget(studio, () => this.model?.layer ?? null);
     this.field = new RandomFieldPanel(studio);
@@ -75,7 +67,7 @@ class ModelMode implements Mode {
       {
         release: (all) => void this.release(all),
         uncertainty: (on) => {
-          this.uncertainty = on;
+          this.uncertainty.shown = on;
           this.latest.push(null);
         },
       },
@@ -102,8 +94,7 @@ class ModelMode implements Mode {
     this.target.leave();
     this.field.leave();
     this.handles = this.model = null;
-    this.painted = "";
-    this.studio.paint.set(null);
+    this.uncertainty.clear();
     this.studio.viewport.canvas.style.cursor = "";
     this.studio.viewport.request();
   }
@@ -120,11 +111,11 @@ class ModelMode implements Mode {
 
   down(pointer: Pointer): boolean {
     const { model, handles, studio } = this;
-    if (!model || !handles || pointer.alt || this.grab) return false;
+    if (!model || !handles || pointer.alt || this.grip.holds) return false;
     const found = handles.pick(pointer.x, pointer.y, pointer.touch ? 26 : undefined);
     if (found !== null) {
       this.choose(found, pointer.shift);
-      this.grab = this.newGrab(pointer, model.landmark(found), found);
+      this.grip.take(pointer, model, found);
       return true;
     }
     const hit = studio.viewport.ray(pointer.x, pointer.y).intersectObject(studio.mesh.target, false)[0];
@@ -133,25 +124,16 @@ class ModelMode implements Mode {
       return false;
     }
     const vertex = this.nearest([hit.face.a, hit.face.b, hit.face.c], hit.point);
-    const at = new Vector3().fromArray(studio.mesh.positions, 3 * vertex);
-    this.grab = this.newGrab(pointer, at, null);
-    void this.place(model, vertex, this.grab);
+    void this.grip.place(pointer, model, vertex);
     return true;
   }
 
   move(pointer: Pointer): void {
-    const { grab } = this;
-    if (!grab) return;
-    grab.to = pointer;
-    grab.moved ||= Math.hypot(pointer.x - grab.from.x, pointer.y - grab.from.y) >= SLOP;
-    if (grab.moved && grab.index !== null) this.pull(grab);
+    this.grip.move(pointer);
   }
 
   up(): void {
-    const { grab } = this;
-    if (!grab) return;
-    grab.released = true;
-    if (grab.index !== null) void this.finish();
+    this.grip.letGo();
   }
 
   hover(pointer: Pointer): void {
@@ -164,9 +146,8 @@ class ModelMode implements Mode {
 
   key(event: KeyboardEvent): boolean {
     const key = event.key.toLowerCase();
-    if (key === "escape" && this.drag) {
-      void this.drag.cancel().then(() => this.latest.push(null));
-      this.drag = this.grab = null;
+    if (key === "escape" && this.grip.drags) {
+      this.grip.cancel();
       return true;
     }
     if (key === "escape" && this.selected.size) {
@@ -178,50 +159,9 @@ class ModelMode implements Mode {
       return true;
     }
     if (key !== "u" || !this.model) return false;
-    this.uncertainty = !this.uncertainty;
+    this.uncertainty.shown = !this.uncertainty.shown;
     this.latest.push(null);
     return true;
-  }
-
-  private newGrab(from: Pointer, at: Vector3, index: number | null): Grab {
-    const plane = new Plane().setFromNormalAndCoplanarPoint(this.studio.viewport.cameras.direction(), at);
-    const under = this.studio.viewport.ray(from.x, from.y).ray.intersectPlane(plane, new Vector3()) ?? at;
-    return { index, plane, offset: at.clone().sub(under), from, to: from, moved: false, released: false };
-  }
-
-  /** Make a vertex a landmark; what the pointer did meanwhile is made up for. */
-  private async place(model: ModelState, vertex: number, grab: Grab): Promise<void> {
-    const answer = await this.studio.ask("model.landmark", { layer: model.layer, vertex });
-    if (this.grab !== grab) return;
-    if (!answer) {
-      this.grab = null;
-      return;
-    }
-    await this.load();
-    grab.index = answer.head["landmark"] as number;
-    this.choose(grab.index, false);
-    if (grab.moved) this.pull(grab);
-    if (grab.released) await this.finish();
-  }
-
-  private pull(grab: Grab): void {
-    const { model, studio } = this;
-    const to = studio.viewport.ray(grab.to.x, grab.to.y).ray.intersectPlane(grab.plane, new Vector3());
-    if (!model || !to || grab.index === null) return;
-    this.drag ??= new LayerDrag(studio, "model", { layer: model.layer, label: "landmark" });
-    const goal = to.add(grab.offset).toArray();
-    model.positions.set(goal, 3 * grab.index);
-    this.handles?.move();
-    this.drag.move({}, { index: Uint32Array.of(grab.index), positions: new Float64Array(goal) });
-  }
-
-  private async finish(): Promise<void> {
-    const { drag } = this;
-    this.grab = null;
-    if (!drag) return;
-    await drag.commit();
-    this.drag = null;
-    this.latest.push(null);
   }
 
   private async release(all: boolean): Promise<void> {
@@ -271,39 +211,19 @@ class ModelMode implements Mode {
 
   private async load(): Promise<void> {
     const { layer, studio } = this;
-    if (this.drag || this.sliders.dragging) return;
+    if (this.grip.drags || this.sliders.dragging) return;
     const answer = layer ? await studio.ask("model.get", { layer: layer.name }) : null;
-    if (!this.handles || this.drag || this.sliders.dragging) return;
+    if (!this.handles || this.grip.drags || this.sliders.dragging) return;
     this.model = layer && answer ? new ModelState(layer.name, answer) : null;
     for (const index of this.selected) if (index >= (this.model?.landmarks ?? 0)) this.selected.delete(index);
     this.handles.load(this.model?.positions ?? new Float64Array(), new Uint32Array());
     this.look();
     this.showPanel();
-    await this.paint();
-  }
-
-  /** How sure the model is of each point, as colours; it depends on which landmarks there are, not on where. */
-  private async paint(): Promise<void> {
-    const { model, studio } = this;
-    const key = model && this.uncertainty && model.landmarks ? model.knowledge : "";
-    if (key === this.painted) return;
-    this.painted = key;
-    const answer = key ? await studio.ask("model.uncertainty", { layer: model!.layer }) : null;
-    if (this.painted !== key) return;
-    studio.paint.set(
-      answer && {
-        title: t("uncertainty"),
-        unit: t("unitLength"),
-        low: answer.head["low"] as number,
-        high: answer.head["high"] as number,
-        values: answer.arrays["values"] as Float32Array,
-        table: answer.arrays["table"] as Numbers,
-      },
-    );
+    await this.uncertainty.paint(this.model);
   }
 
   private showPanel(): void {
-    if (!this.sliders.dragging) this.side.show(this.model, this.selected.size, this.uncertainty);
+    if (!this.sliders.dragging) this.side.show(this.model, this.selected.size, this.uncertainty.shown);
   }
 
   private look(): void {
