@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from limbed_bodies import FIGURE_CUTS, QUADRUPED_CUTS, figure, quadruped
+from limbed_bodies import QUADRUPED_CUTS, figure, quadruped
 
 from pliant.cages.builder import CageBuilder
 from pliant.cages.checking import check_cage
@@ -22,11 +22,9 @@ def with_cuts(mesh, cuts, **options):
     return builder
 
 
-@pytest.mark.parametrize(
-    ("mesh", "cuts"), [(figure(), FIGURE_CUTS), (quadruped(), QUADRUPED_CUTS)], ids=["figure", "quadruped"]
-)
-def test_a_body_with_limbs_gets_a_cage_that_passes_the_check(mesh, cuts):
-    cage = with_cuts(mesh, cuts).build(rounds=1)
+def test_a_body_with_limbs_gets_a_cage_that_passes_the_check():
+    mesh = quadruped()
+    cage = with_cuts(mesh, QUADRUPED_CUTS).build(rounds=1)
     report = check_cage(cage, mesh)
     assert report.ok, report.failures
     assert (report.components, report.genus) == (1, 0)
