@@ -18,7 +18,7 @@ from distributed import Client, LocalCluster
 from distributed.core import Status
 
 import pliant as pl
-from pliant.batch.crews import Crew, Pool
+from pliant.batch.crews import Crew, Pool, crew_of
 from pliant.batch.dispatch import outcomes
 from pliant.batch.outcome import Job, Outcome
 from pliant.batch.parcel import Parcel, sent
@@ -90,6 +90,23 @@ def test_a_cluster_whose_workers_are_killed(cluster, stack, many, serial, tmp_pa
     assert {each.status for each in found} == {"ok"}, [each.error for each in found if each.error]
     assert all(each.output.read_bytes() == serial[each.index % 12] for each in found)
     assert not [path for path in (tmp_path / "out").iterdir() if path.suffix not in (".ply", ".jsonl")]
+
+
+def test_what_is_sent_again_is_done_again(cluster, tmp_path):
+    """To a cluster, work of the same name is the same work: it would hand over the error of the first time."""
+    jobs = [Job(0, tmp_path / "begun", tmp_path / "out")]
+    with Client(cluster) as client, crew_of(client, None, 1) as crew:
+        crew._work = only_the_second_time
+        first = crew.submit(Parcel(b"none"), jobs, False)
+        assert isinstance(first.exception(), OSError)
+        assert crew.submit(Parcel(b"none"), jobs, False).result() == "done"
+
+
+def only_the_second_time(parcel, jobs, strict):
+    if jobs[0].input.exists():
+        return "done"
+    jobs[0].input.touch()
+    raise OSError("the worker is gone")
 
 
 def test_a_pool_whose_processes_are_killed(stack, many, serial, tmp_path):

@@ -144,7 +144,8 @@ def _given(executor: Any) -> Crew:
     if isinstance(executor, Executor):
         return Given(executor, getattr(executor, "_max_workers", _MANY))
     if hasattr(executor, "get_executor") and hasattr(executor, "nthreads"):  # a client of Dask's
-        return Given(executor.get_executor(), sum(executor.nthreads().values()) or _MANY, _MANY)
+        fresh = executor.get_executor(pure=False)  # pure: a job sent again would get the error of its first time
+        return Given(fresh, sum(executor.nthreads().values()) or _MANY, _MANY)
     raise InvalidParameter(
         f"a {type(executor).__name__} is no executor: pass one of concurrent.futures, or a client of dask.distributed"
     )
