@@ -26,6 +26,7 @@ from pliant.numerics.lattices.tricubic import tabulate, tabulate_slopes
 from pliant.numerics.lattices.tricubic_sweep import place, plane
 
 HALVINGS = 12.0  # of a step that does not lower the residual
+UPRIGHT = 1e-8  # the least square of det J of which so small a step does not change the sign
 
 
 @inlined
@@ -51,6 +52,21 @@ def _sums(lattice, p, down_x, down_y, table, lane, sums):
     store_sum_of_halves(sums, 32 + 3 * lane, along_x)
     store_sum_of_halves(sums, 64 + 3 * lane, along_y)
     store_sum_of_halves(sums, 96 + 3 * lane, along_z)
+
+
+@inlined
+def _moved(lattice, p, down_x, down_y, table, lane, sums):
+    """The sum at one point: a triple."""
+    y0, y1, y2, y3 = get(table, 64 + lane), get(table, 72 + lane), get(table, 80 + lane), get(table, 88 + lane)
+    value = spread(0.0)
+    for half in range(2):
+        rows = spread(0.0)
+        for i in range(4):
+            at = p + i * down_x + 8 * half
+            rows = rows + plane(lattice, at, down_y, y0, y1, y2, y3) * get(table, 8 * i + lane)
+        z = 128 + 16 * half + lane
+        value = value + rows * spread_halves(get(table, z), get(table, z + 8))
+    store_sum_of_halves(sums, 3 * lane, value)
 
 
 @inlined
@@ -113,6 +129,14 @@ def _residual(image, trial, sums, affine):
 
 
 @inlined
+def _almost(state, close):
+    """Whether Newton's next step will solve all eight, and none of them is beside a fold."""
+    least, ratio, one, zero = load(state, 48), load(state, 56), spread(1.0), spread(0.0)
+    far, folding = where_less(zero + close, least, one, zero), where_less(ratio * ratio, zero + UPRIGHT, one, zero)
+    return total(far + folding) == 0.0
+
+
+@inlined
 def _judge(trial, step, size, ratio, state):
     """Keep trials that lower the residual, with the step from there; elsewhere go half as far from the best.
 
@@ -127,12 +151,44 @@ def _judge(trial, step, size, ratio, state):
     store(state, 48, where_less(size, least, size, least))
 
 
+@inlined
+def _settled(trial, residual, accepted, state):
+    """Whether all trials are solved; then the best of them are kept."""
+    size, least, zero = _dot(residual, residual), load(state, 48), spread(0.0)
+    if total(where_less(zero + accepted * accepted, size, spread(1.0), zero)) > 0.0:
+        return False
+    for c in range(3):
+        store(state, 8 * c, where_less(size, least, trial[c], load(state, 8 * c)))
+    store(state, 48, where_less(size, least, size, least))
+    return True
+
+
+@inlined
+def _take(n, count, source, block):
+    """Eight points, of which lanes beyond the last do its work again."""
+    for i in range(24):
+        put(block, i, get(source, 3 * n + min(i, 3 * (count - 1) + i % 3)))
+
+
+@inlined
+def _write(n, count, state, out, error, ratios):
+    """What was found of a block of points."""
+    store(state, 48, root(load(state, 48)))
+    for i in range(count):
+        for c in range(3):
+            put(out, 3 * (n + i) + c, get(state, 8 * c + i))
+        put(error, n + i, get(state, 48 + i))
+        put(ratios, n + i, get(state, 56 + i))
+
+
 @kernel
 def invert(
     images, first, stop, start, frame, limits, keep, grid, stride, basis, lattice, shape, affine, accepted, iterations,
     out, error, ratios,
 ):  # fmt: skip
     """The pre-images of points ``first`` to ``stop``, the lengths of what is left of the residuals, and det J there.
+
+    Where the last step is so small that it does not matter, det J is that before it.
 
     Parameters
     ----------
@@ -148,13 +204,11 @@ def invert(
     table, local, corner, sums = np.empty(192), np.empty(24), np.empty(8), np.zeros(128)
     state, block, begin = np.empty(72), np.zeros(24), np.zeros(24)
     down_x, down_y = shape[1] * shape[2] * 4, shape[2] * 4
-    zero = spread(0.0)
+    zero, close = spread(0.0), accepted / max(abs(frame[0, 0]) + abs(frame[0, 1]) + abs(frame[0, 2]), 1e-300)
     for n in range(first, stop, 8):
         count = min(8, stop - n)
-        for i in range(24):  # lanes beyond the last point do its work again
-            at = 3 * n + min(i, 3 * (count - 1) + i % 3)
-            put(block, i, get(images, at))
-            put(begin, i, get(start, at))
+        _take(n, count, images, block)
+        _take(n, count, start, begin)
         image, trial = load_triples(block, 0), load_triples(begin, 0)
         state[24:48], state[48:56], state[56:] = 0.0, np.inf, 0.0
         store(state, 0, trial[0])
@@ -164,8 +218,16 @@ def invert(
             inside = place(trial[0], trial[1], trial[2], frame, limits, keep, grid, stride, shape, local, corner)
             for axis in range(3):
                 tabulate(table, 64 * axis, basis, load(local, 8 * axis))
+            for b in range(0, 32, 8):
+                store(table, b, load(table, b) * inside)
+            if _almost(state, close):  # no slopes are needed any more
+                for lane in range(8):
+                    _moved(lattice, int(get(corner, lane)), down_x, down_y, table, lane, sums)
+                if _settled(trial, _residual(image, trial, sums, affine), accepted, state):
+                    break
+            for axis in range(3):
                 tabulate_slopes(table, 64 * axis + 32, basis, load(local, 8 * axis))
-            for b in range(0, 64, 8):
+            for b in range(32, 64, 8):
                 store(table, b, load(table, b) * inside)
             for lane in range(8):
                 _sums(lattice, int(get(corner, lane)), down_x, down_y, table, lane, sums)
@@ -181,9 +243,4 @@ def invert(
                 load(state, 8) + load(state, 32) * going,
                 load(state, 16) + load(state, 40) * going,
             )
-        store(state, 48, root(load(state, 48)))
-        for i in range(count):
-            for c in range(3):
-                put(out, 3 * (n + i) + c, get(state, 8 * c + i))
-            put(error, n + i, get(state, 48 + i))
-            put(ratios, n + i, get(state, 56 + i))
+        _write(n, count, state, out, error, ratios)
