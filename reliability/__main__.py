@@ -58,8 +58,8 @@ for 99 of 100 answers. What only reads is answered beside the session, of the sc
 long for is computed there; before, when all commands were done one after another, 99 of 100 honest frames took up to
 434 ms, and single rounds a second. What kept the interpreter from all threads, as libigl does, is asked in slices or in
 a process of its own. Edits still wait for one another. Rounds in which other work took the processors too are in the
-table; they are the slow ones. This run found nothing that answers wrongly; requests miss their goal by 22 ms, and one
-of the nine studios grew to 1.2 GB while it exported. The run before found two numbers that were too large for what was
+table; they are the slow ones. This run found nothing that answers wrongly; one of the nine studios
+grew to 1.3 GB while it exported. The run before found two numbers that were too large for what was
 done with them, a scale and a vertex: they are refused by name since. Mended before were a region that grew by as many
 rings as were asked for, without end, and names that are too long.""",
     "losing": """## Batches
